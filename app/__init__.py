@@ -1,0 +1,1 @@
+"""The web application: pages, API, sessions and the bridge to viser."""

@@ -1,0 +1,70 @@
+"""Start the server: `python -m app`. Settings come from the environment (see app/settings.py)."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import signal
+import sys
+import threading
+
+import uvicorn
+
+from app.settings import Settings, load
+from app.web import create_app
+from sims.kit.viser_internals import ViserHost
+
+
+def main() -> None:
+    """Run until interrupted. One event loop serves viser, the pages and all websockets."""
+    settings = load()
+    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
+    if sys.platform != "win32":
+        import uvloop
+
+        asyncio.set_event_loop_policy(uvloop.EventLoopPolicy())
+    host = ViserHost()
+    server = uvicorn.Server(config(settings, host))
+    finished = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: setattr(server, "should_exit", True))
+
+    async def serve() -> None:
+        try:
+            await server.serve()
+        finally:
+            finished.set()
+
+    serving = asyncio.run_coroutine_threadsafe(serve(), host.loop)
+    threading.Thread(target=announce, args=(server, settings), daemon=True).start()
+    while not finished.wait(0.2):
+        pass
+    with contextlib.suppress(SystemExit):
+        serving.result()
+    host.stop()
+    if not server.started:
+        raise SystemExit(f"Sim3 can't listen on {settings.host}:{settings.port}; is the port taken? Set SIM3_PORT.")
+
+
+def config(settings: Settings, host: ViserHost) -> uvicorn.Config:
+    """How uvicorn serves the application."""
+    return uvicorn.Config(
+        create_app(settings, host), host=settings.host, port=settings.port, ws="websockets-sansio",
+        ws_max_size=1 << 20, ws_per_message_deflate=False, log_level="warning", access_log=False,
+        timeout_graceful_shutdown=2, proxy_headers=True, lifespan="on",
+    )  # fmt: skip
+
+
+def announce(server: uvicorn.Server, settings: Settings) -> None:
+    """Say where to look, once the server listens."""
+    while not server.started and not server.should_exit:
+        threading.Event().wait(0.05)
+    for item in server.servers:
+        host, port = item.sockets[0].getsockname()[:2]
+        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::1", "::") else host
+        print(f"Sim3 is ready: http://{shown}:{port}{settings.root_path}/  (Ctrl+C ends it)", flush=True)
+
+
+if __name__ == "__main__":
+    main()

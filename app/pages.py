@@ -1,0 +1,114 @@
+"""The pages: launcher, sim pages, the viewer's page, and what the API says about sims."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import math
+from html import escape
+from typing import Any
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse, Response
+from starlette.templating import Jinja2Templates
+
+from app.settings import ROOT
+from sims.kit.params import BadParams, Complaint
+from sims.kit.sim import Sim
+from sims.kit.viser_internals import client_page
+
+AnySim = Sim[Any, Any]
+OPTIONS = ("view", "controls", "theme")
+"""What every query may hold besides the sim's parameters."""
+
+templates = Jinja2Templates(ROOT / "app" / "templates")
+
+
+def base(request: Request) -> str:
+    """The path prefix under which the application is reached."""
+    return str(request.scope.get("root_path", "")).rstrip("/")
+
+
+@functools.cache
+def fingerprint(name: str) -> str:
+    """A short hash of a static file, so that browsers may keep it for ever."""
+    return hashlib.sha256((ROOT / "static" / name).read_bytes()).hexdigest()[:10]
+
+
+def static(request: Request, name: str) -> str:
+    """Address of a static file."""
+    return f"{base(request)}/static/{name}?v={fingerprint(name)}"
+
+
+def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
+    """An HTML page from a template."""
+    shared = {"base": base(request), "static": functools.partial(static, request)}
+    return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
+
+
+def split_options(items: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], dict[str, str]]:
+    """A query's parameters, and its page options."""
+    return [i for i in items if i[0] not in OPTIONS], dict(i for i in items if i[0] in OPTIONS)
+
+
+def check_options(options: dict[str, str]) -> None:
+    """Refuse page options that can't be. Raises BadParams."""
+    complaints = []
+    if (theme := options.get("theme", "light")) not in ("light", "dark"):
+        complaints.append(Complaint("theme", theme[:80], "light or dark"))
+    if (controls := options.get("controls", "1")) not in ("0", "1"):
+        complaints.append(Complaint("controls", controls[:80], "1 or 0"))
+    if "view" in options and not _is_view(options["view"]):
+        complaints.append(Complaint("view", options["view"][:80], "six numbers: viewpoint x,y,z and look-at x,y,z"))
+    if complaints:
+        raise BadParams(complaints, {})
+
+
+def _is_view(text: str) -> bool:
+    try:
+        values = [float(v) for v in text.split(",")]
+    except ValueError:
+        return False
+    return len(values) == 6 and all(math.isfinite(v) and abs(v) < 1e4 for v in values) and values[:3] != values[3:]
+
+
+def viewer(request: Request, sim: AnySim, *, watching: bool) -> Response:
+    """viser's client with our companion in its head."""
+    data = {
+        "slug": sim.slug, "title": sim.title, "watching": watching,
+        "view": [*sim.view.position, *sim.view.look_at], "radius": sim.view.radius, "panes": sim.panes is not None,
+        "still": {theme: f"{base(request)}/static/thumbs/{sim.slug}-{theme}.webp" for theme in ("light", "dark")},
+    }  # fmt: skip
+    head = (
+        f"<title>{escape(sim.title)} — Sim3</title>"
+        f'<link rel="stylesheet" href="{static(request, "tokens.css")}">'
+        f'<link rel="stylesheet" href="{static(request, "viewer.css")}">'
+        f'<script id="sim3" type="application/json">{json.dumps(data).replace("<", chr(92) + "u003c")}</script>'
+        f'<script src="{static(request, "boot.js")}"></script>'
+        f'<script type="module" src="{static(request, "sim.js")}"></script>'
+    )
+    return HTMLResponse(_around_head()[0] + head + _around_head()[1], headers={"cache-control": "no-store"})
+
+
+@functools.cache
+def _around_head() -> tuple[str, str]:
+    """viser's page before and after the place where our own head goes (its own title is left out)."""
+    page = client_page()
+    at = page.index("<title>")
+    return page[:at], page[page.index("</title>") + len("</title>") :]
+
+
+def card(sim: AnySim) -> dict[str, Any]:
+    """One sim in the catalogue."""
+    return {"slug": sim.slug, "title": sim.title, "summary": sim.summary, "concepts": list(sim.concepts)}
+
+
+def details(sim: AnySim) -> dict[str, Any]:
+    """One sim with its objectives and the schema of its parameters."""
+    return {
+        **card(sim),
+        "objectives": [{"text": o.text, "level": o.level} for o in sim.objectives],
+        "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
+        "parameters": sim.params.model_json_schema(),
+    }

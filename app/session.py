@@ -1,0 +1,229 @@
+"""Sessions (rooms): one Params, any number of viewers, one writer.
+
+Everything here runs on viser's event loop, so there are no locks. An update makes the newest Params and marks
+the session dirty; one task per session solves and draws. What arrives meanwhile replaces what was waiting: frames
+are dropped under load, never queued, and the last state always arrives.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import logging
+import secrets
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from pydantic import ValidationError
+
+from app.motion import play
+from geometry import GeometryError
+from sims.kit.params import Params
+from sims.kit.sim import Sim, Step
+from sims.kit.viewer import Viewer
+
+log = logging.getLogger("sim3")
+STATE_INTERVAL = 0.1
+"""Seconds between state messages on the channel while a learner drags."""
+UNVISITED = 60.0
+"""Seconds that a session without viewers is kept."""
+
+
+class Session:
+    """One running sim."""
+
+    def __init__(self, sim: Sim[Any, Any], room: str, params: Params, pool: ThreadPoolExecutor) -> None:
+        self.sim = sim
+        self.room = room
+        self.params = self.initial = params
+        self.solution: Any = sim.solve(params)
+        self.viewers: set[Viewer] = set()
+        self.listeners: set[Callable[[dict[str, Any]], None]] = set()
+        self.left_at = time.monotonic()
+        self.version = 0
+        self._pool = pool
+        self._drawing: asyncio.Task[None] | None = None
+        self._dirty = False
+        self._motion: asyncio.Task[None] | None = None
+        self._told_at = 0.0
+        self._telling: asyncio.TimerHandle | None = None
+        self.reduced_motion = False
+
+    def change(self, changes: Mapping[str, Any], *, live: bool = True) -> None:
+        """Take changes from a control (kept within bounds) or, not live, from a link or message (refused if bad).
+
+        Raises pydantic's ValidationError for values that are refused; the state stays.
+        """
+        self.stop_motion()
+        self._set(self.params.moved(changes) if live else self.params.changed(changes))
+
+    def drag(self, name: str, place: tuple[float, ...]) -> None:
+        """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels)."""
+        handle = self.sim.handles.get(name)
+        if handle is None:
+            raise KeyError(name)
+        self.change(handle(self.params, place))
+
+    def act(self, name: str) -> None:
+        """Press a button: reset, or one of the sim's actions."""
+        self.stop_motion()
+        if name == "reset":
+            self._set(self.initial)
+            return
+        action = next((a for a in self.sim.actions if a.name == name), None)
+        if action is None:
+            raise KeyError(name)
+        result = action.run(self.params)
+        if isinstance(result, Mapping):
+            self._set(self.params.changed(result))
+        else:
+            self._motion = asyncio.get_running_loop().create_task(self._play(result))
+
+    def stop_motion(self) -> None:
+        """End a running animation where it is."""
+        if self._motion is not None:
+            self._motion.cancel()
+            self._motion = None
+
+    async def _play(self, steps: Iterator[Step]) -> None:
+        async for changes in play(steps, lambda: self.params, reduced=self.reduced_motion):
+            self._set(self.params.moved(changes))
+        self._motion = None
+
+    def _set(self, params: Params) -> None:
+        if params == self.params:
+            return
+        self.params = params
+        self.version += 1
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Solve and draw soon; calls before that happens join it."""
+        self._dirty = True
+        if self._drawing is None:
+            self._drawing = asyncio.get_running_loop().create_task(self._draw())
+
+    async def _draw(self) -> None:
+        try:
+            while self._dirty:
+                self._dirty = False
+                params = self.params
+                try:
+                    self.solution = await self._solve(params)
+                except GeometryError as error:
+                    self._tell({"type": "error", "message": str(error)})
+                    continue
+                for viewer in list(self.viewers):
+                    viewer.draw(params, self.solution)
+                self._tell_state_soon()
+        except Exception:
+            log.exception("drawing %s failed", self.sim.slug)
+        finally:
+            self._drawing = None
+
+    async def _solve(self, params: Params) -> Any:
+        if not self.sim.heavy:
+            return self.sim.solve(params)
+        return await asyncio.get_running_loop().run_in_executor(self._pool, self.sim.solve, params)
+
+    def state(self) -> dict[str, Any]:
+        """The state message for pages."""
+        return {
+            "type": "state", "version": self.version, "params": self.params.model_dump(mode="json"),
+            "query": self.params.query(), "text": self.sim.describe(self.params, self.solution),
+        }  # fmt: skip
+
+    def _tell(self, message: dict[str, Any]) -> None:
+        for listener in list(self.listeners):
+            listener(message)
+
+    def _tell_state_soon(self) -> None:
+        if self._telling is None:
+            wait = self._told_at + STATE_INTERVAL - time.monotonic()
+            self._telling = asyncio.get_running_loop().call_later(max(wait, 0.0), self._tell_state)
+
+    def _tell_state(self) -> None:
+        self._telling = None
+        self._told_at = time.monotonic()
+        if self.listeners:
+            self._tell(self.state())
+
+    def join(self, viewer: Viewer) -> None:
+        """Add a viewer and show it the present state."""
+        self.viewers.add(viewer)
+        viewer.draw(self.params, self.solution)
+
+    def leave(self, viewer: Viewer | None = None, listener: Callable[[dict[str, Any]], None] | None = None) -> None:
+        """Forget a viewer or a channel."""
+        self.viewers.discard(viewer)  # type: ignore[arg-type]
+        self.listeners.discard(listener)  # type: ignore[arg-type]
+        if not self.viewers and not self.listeners:
+            self.left_at = time.monotonic()
+            self.stop_motion()
+
+    @property
+    def occupied(self) -> bool:
+        """Somebody looks at it."""
+        return bool(self.viewers or self.listeners)
+
+
+class Full(RuntimeError):
+    """No more sessions fit."""
+
+
+class Sessions:
+    """All sessions of this process, by sim and room."""
+
+    def __init__(self, limit: int) -> None:
+        self._limit = limit
+        self._by_room: dict[tuple[str, str], Session] = {}
+        self._pool = ThreadPoolExecutor(max_workers=2, thread_name_prefix="solve")
+        self.counts: Counter[str] = Counter()
+
+    def __len__(self) -> int:
+        return len(self._by_room)
+
+    def find(self, sim: Sim[Any, Any], room: str) -> Session | None:
+        """The running session of a room."""
+        return self._by_room.get((sim.slug, room))
+
+    def open(self, sim: Sim[Any, Any], room: str, params: Params) -> Session:
+        """The session of a room, begun with `params` if it isn't running. Raises `Full`."""
+        session = self.find(sim, room)
+        if session is None:
+            self.sweep()
+            if len(self._by_room) >= self._limit:
+                raise Full
+            session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
+            self.counts["opened"] += 1
+        return session
+
+    def sweep(self) -> None:
+        """Forget sessions that nobody has looked at for a while."""
+        now = time.monotonic()
+        for key, session in list(self._by_room.items()):
+            if not session.occupied and now - session.left_at > UNVISITED:
+                del self._by_room[key]
+
+    def close(self) -> None:
+        """End the pool."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+def new_key() -> str:
+    """A fresh unguessable key; whoever has it controls the session."""
+    return secrets.token_urlsafe(16)
+
+
+def room_of(key: str) -> str:
+    """The room that a key controls."""
+    return hashlib.sha256(key.encode()).hexdigest()[:20]
+
+
+def refusal(error: ValidationError) -> str:
+    """A validation error in one line for people."""
+    item = error.errors()[0]
+    return f"{'.'.join(str(p) for p in item['loc'])}: {item['msg']}".removeprefix(": ")

@@ -1,0 +1,51 @@
+"""Settings from the environment (SIM3_…), validated at start."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pydantic import Field, ValidationError, field_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class Settings(BaseSettings):
+    """Everything an administrator can set; each name is SIM3_ plus the field in capitals."""
+
+    model_config = SettingsConfigDict(env_prefix="SIM3_", env_ignore_empty=True)
+
+    host: str = Field("127.0.0.1", description="address to listen on")
+    port: int = Field(8000, ge=0, le=65535, description="port to listen on")
+    root_path: str = Field("", description="path prefix behind a proxy, as in /sim3")
+    frame_ancestors: str = Field("*", description="sites that may embed the sims, as in a CSP frame-ancestors list")
+    max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
+    origins: str = Field("", description="further origins, separated by spaces, whose pages may open a websocket")
+
+    @field_validator("root_path")
+    @classmethod
+    def _prefix(cls, value: str) -> str:
+        value = value.rstrip("/")
+        if value and not value.startswith("/"):
+            raise ValueError("must start with a slash, as in /sim3")
+        return value
+
+    @field_validator("frame_ancestors", "origins")
+    @classmethod
+    def _one_line(cls, value: str) -> str:
+        if any(c in value for c in ";,\r\n"):
+            raise ValueError("must be a list separated by spaces, without semicolons, commas or line breaks")
+        return value
+
+
+def load() -> Settings:
+    """Settings from the environment; ends the program with a clear message if one is wrong."""
+    try:
+        return Settings()
+    except ValidationError as error:
+        lines = [
+            f"  SIM3_{str(e['loc'][0]).upper()}={os.environ.get('SIM3_' + str(e['loc'][0]).upper(), '')!r}: {e['msg']}"
+            for e in error.errors()
+        ]
+        raise SystemExit("Sim3 can't start, a setting is wrong:\n" + "\n".join(lines)) from None

@@ -1,0 +1,204 @@
+"""The FastAPI application: every address of the public contract."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+from urllib.parse import urlencode
+
+from fastapi import FastAPI, HTTPException, Request, WebSocket
+from fastapi.encoders import jsonable_encoder
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
+
+from app import pages
+from app.bridge import Bridge
+from app.security import Headers
+from app.session import Full, Sessions, new_key, room_of
+from app.settings import ROOT, Settings
+from geometry import GeometryError
+from sims import SIMS, by_slug
+from sims.kit.params import BadParams, Params
+from sims.kit.sim import Sim, jsonable
+from sims.kit.viser_internals import ViserHost
+
+log = logging.getLogger("sim3")
+AnySim = Sim[Any, Any]
+
+
+def create_app(settings: Settings, host: ViserHost) -> FastAPI:
+    """The application, bound to a running viser host."""
+    sessions = Sessions(settings.max_sessions)
+    bridge = Bridge(host, sessions, settings.origins)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        sessions.close()
+
+    app = FastAPI(
+        title="Sim3", summary="Interactive 3D-geometry sims", version="1", root_path=settings.root_path,
+        lifespan=lifespan, redoc_url=None,
+    )  # fmt: skip
+    app.state.sessions, app.state.bridge = sessions, bridge
+    app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
+    app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
+    app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
+    _add_errors(app)
+    _add_pages(app, sessions)
+    _add_api(app)
+    _add_sockets(app, bridge)
+
+    @app.get("/healthz", include_in_schema=False)
+    async def healthz() -> dict[str, Any]:
+        return {"status": "ok", "sims": len(SIMS), "sessions": len(sessions)}
+
+    return app
+
+
+def sim_or_404(slug: str) -> AnySim:
+    """The sim of an address."""
+    sim = by_slug(slug)
+    if sim is None:
+        raise HTTPException(404, f"There is no sim named {slug[:60]!r}.")
+    return sim
+
+
+def _params(sim: AnySim, request: Request) -> Params:
+    """Parameters of a link; page options are checked too. Raises BadParams."""
+    items, options = pages.split_options(request.query_params.multi_items())
+    pages.check_options(options)
+    params = sim.params.from_query(items)
+    return params
+
+
+def _add_pages(app: FastAPI, sessions: Sessions) -> None:
+    @app.get("/", response_class=HTMLResponse, include_in_schema=False)
+    async def launcher(request: Request) -> Response:
+        return pages.render(request, "launcher.html", sims=SIMS)
+
+    @app.get("/sims/{slug}", response_class=HTMLResponse, include_in_schema=False)
+    async def lesson(request: Request, slug: str) -> Response:
+        sim = sim_or_404(slug)
+        _params(sim, request)
+        return pages.render(request, "sim.html", sim=sim, query=request.url.query)
+
+    @app.get("/sims/{slug}/embed", include_in_schema=False)
+    async def embed(request: Request, slug: str) -> Response:
+        sim = sim_or_404(slug)
+        _params(sim, request)
+        key = new_key()
+        query = f"?{request.url.query}" if request.url.query else ""
+        return RedirectResponse(f"{pages.base(request)}/sims/{slug}/s/{room_of(key)}/{key}/{query}", 307)
+
+    @app.get("/sims/{slug}/s/{room}/{key}/", response_class=HTMLResponse, include_in_schema=False)
+    async def controlled(request: Request, slug: str, room: str, key: str) -> Response:
+        sim = sim_or_404(slug)
+        if room_of(key) != room:
+            raise HTTPException(404, "This link's key doesn't fit its room.")
+        params = _params(sim, request)
+        known = sessions.find(sim, room)
+        try:
+            session = sessions.open(sim, room, params)
+        except Full:
+            raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
+        if known and request.query_params:
+            session.change(params.model_dump(), live=False)
+        return pages.viewer(request, sim, watching=False)
+
+    @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
+    async def watched(request: Request, slug: str, room: str) -> Response:
+        return pages.viewer(request, sim_or_404(slug), watching=True)
+
+    @app.get("/sims/{slug}/s/{room}/{key}", include_in_schema=False)
+    @app.get("/sims/{slug}/s/{room}", include_in_schema=False)
+    async def slash(request: Request) -> Response:
+        query = f"?{request.url.query}" if request.url.query else ""
+        return RedirectResponse(f"{pages.base(request)}{request.scope['path'].removeprefix(request.scope.get('root_path', ''))}/{query}")
+
+
+def _add_api(app: FastAPI) -> None:
+    @app.get("/api/sims", tags=["catalogue"])
+    async def catalogue() -> list[dict[str, Any]]:
+        """Every sim with its title, summary and concepts."""
+        return [pages.card(sim) for sim in SIMS]
+
+    @app.get("/api/sims/{slug}", tags=["catalogue"])
+    async def one(slug: str) -> dict[str, Any]:
+        """One sim, with its objectives and the JSON schema of its parameters."""
+        return pages.details(sim_or_404(slug))
+
+    for sim in SIMS:
+        _add_solve(app, sim)
+
+    @app.post("/api/sims/{slug}/solve", include_in_schema=False)
+    async def unknown(slug: str) -> None:
+        sim_or_404(slug)
+
+
+def _add_solve(app: FastAPI, sim: AnySim) -> None:
+    def solve(params: Any = None) -> Response:
+        params = params or sim.params()
+        try:
+            solution = sim.solve(params)
+        except GeometryError as error:
+            raise HTTPException(422, str(error)) from error
+        return JSONResponse(jsonable({"params": params.model_dump(mode="json"), "solution": solution}))
+
+    solve.__annotations__ = {"params": sim.params | None, "return": Response}
+    solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
+    solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
+    app.post(f"/api/sims/{sim.slug}/solve", tags=["solve"], response_class=JSONResponse)(solve)
+
+
+def _add_sockets(app: FastAPI, bridge: Bridge) -> None:
+    async def enter(ws: WebSocket, slug: str, room: str, key: str | None, kind: str) -> None:
+        sim = by_slug(slug)
+        if sim is None or (key is not None and room_of(key) != room) or len(room) > 40:
+            bridge.refusals["address"] += 1
+            await ws.close(1008)
+            return
+        await getattr(bridge, kind)(ws, sim, room, watching=key is None)
+
+    @app.websocket("/sims/{slug}/s/{room}/channel")
+    async def watch_channel(ws: WebSocket, slug: str, room: str) -> None:
+        await enter(ws, slug, room, None, "channel")
+
+    @app.websocket("/sims/{slug}/s/{room}/{key}/channel")
+    async def channel(ws: WebSocket, slug: str, room: str, key: str) -> None:
+        await enter(ws, slug, room, key, "channel")
+
+    @app.websocket("/sims/{slug}/s/{room}")
+    @app.websocket("/sims/{slug}/s/{room}/")
+    async def watch(ws: WebSocket, slug: str, room: str) -> None:
+        await enter(ws, slug, room, None, "viser")
+
+    @app.websocket("/sims/{slug}/s/{room}/{key}")
+    @app.websocket("/sims/{slug}/s/{room}/{key}/")
+    async def control(ws: WebSocket, slug: str, room: str, key: str) -> None:
+        await enter(ws, slug, room, key, "viser")
+
+
+def _add_errors(app: FastAPI) -> None:
+    @app.exception_handler(BadParams)
+    async def bad_params(request: Request, error: BadParams) -> Response:
+        sim = by_slug(request.path_params.get("slug", ""))
+        return pages.render(
+            request, "bad_params.html", status=422, sim=sim, complaints=error.complaints, good=urlencode(error.good)
+        )
+
+    @app.exception_handler(RequestValidationError)
+    async def bad_body(_: Request, error: RequestValidationError) -> Response:
+        details = [{k: v for k, v in e.items() if k != "ctx"} for e in error.errors()]
+        return JSONResponse(jsonable({"detail": jsonable_encoder(details)}), 422)
+
+    @app.exception_handler(404)
+    @app.exception_handler(503)
+    async def missing(request: Request, error: HTTPException) -> Response:
+        if request.url.path.removeprefix(request.scope.get("root_path", "")).startswith("/api/"):
+            return JSONResponse({"detail": error.detail}, error.status_code)
+        return pages.render(request, "missing.html", status=error.status_code, detail=error.detail)

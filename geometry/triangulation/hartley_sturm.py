@@ -1,0 +1,55 @@
+"""The least correction of a pair of pixels by the polynomial of Hartley and Sturm, which has all the minima."""
+
+import numpy as np
+from numpy.polynomial.polynomial import polymul, polyroots, polysub
+
+from ..arrays import Array
+
+
+def least_correction(F: Array, left: Array, right: Array) -> Array:
+    """Return (Δleft, Δright), (4,), the shortest with (right + Δright)^T F (left + Δleft) = 0, for points (2,).
+
+    F (3, 3) has rank 2, and the points are neither its epipoles nor badly scaled.
+    Source: Hartley and Sturm 1997, "Triangulation", sec. 4.2; Hartley and Zisserman 2004, algorithm 12.1.
+    """
+    centred = _shift(right).T @ F @ _shift(left)
+    U, _, Vt = np.linalg.svd(centred)
+    (turn_left, f), (turn_right, g) = _epipole_on_x(Vt[2]), _epipole_on_x(U[:, 2])
+    (a, b), (c, d) = (turn_right @ centred @ turn_left.T)[1:, 1:].tolist()
+    t, s = _stationary(a, b, c, d, f, g)
+    p, q = a * t + b * s, c * t + d * s
+    with np.errstate(divide="ignore", invalid="ignore"):
+        best = np.nanargmin(t**2 / (s**2 + f**2 * t**2) + q**2 / (p**2 + g**2 * q**2))
+    line_left = np.array([f * t[best], s[best], -t[best]])
+    line_right = np.array([-g * q[best], p[best], q[best]])
+    return np.concatenate([_foot(line_left @ turn_left), _foot(line_right @ turn_right)])
+
+
+def _stationary(a: float, b: float, c: float, d: float, f: float, g: float) -> tuple[Array, Array]:
+    """Return the pencil's lines t : s at which the distance may be least: the real parts of all roots, and t : 0."""
+    p, q = [b, a], [d, c]
+    right = polymul(p, p) + g**2 * polymul(q, q)
+    left = [1.0, 0.0, f**2]
+    slope = polysub(
+        polymul([0.0, 1.0], polymul(right, right)),
+        (a * d - b * c) * polymul(polymul(left, left), polymul(p, q)),
+    )
+    roots = polyroots(slope).real
+    return np.append(roots, 1.0), np.append(np.ones_like(roots), 0.0)
+
+
+def _shift(point: Array) -> Array:
+    T = np.eye(3)
+    T[:2, 2] = point
+    return T
+
+
+def _epipole_on_x(epipole: Array) -> tuple[Array, float]:
+    """Return the rotation (3, 3) of the image that takes the epipole to (1, 0, f), and f."""
+    x, y, w = epipole / np.hypot(epipole[0], epipole[1])
+    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]]), float(w)
+
+
+def _foot(line: Array) -> Array:
+    """Return the point (2,) of a line (3,) nearest to the origin."""
+    return np.asarray(-line[2] * line[:2] / (line[0] ** 2 + line[1] ** 2))

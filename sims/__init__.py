@@ -1,0 +1,15 @@
+"""The sims, in the order in which the launcher shows them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sims.euler_angles import SIM as EULER_ANGLES
+from sims.kit.sim import Sim
+
+SIMS: tuple[Sim[Any, Any], ...] = (EULER_ANGLES,)
+
+
+def by_slug(slug: str) -> Sim[Any, Any] | None:
+    """The sim of that name, or None."""
+    return next((sim for sim in SIMS if sim.slug == slug), None)

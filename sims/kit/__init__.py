@@ -1,0 +1,1 @@
+"""What the sims share: parameters, controls, scenes, image panes, read-outs."""

@@ -1,0 +1,50 @@
+"""Bodies that people recognise at 100 pixels, modelled with trimesh; light to send."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import trimesh
+from trimesh.creation import box, cone, cylinder, icosphere
+
+
+def _moved(mesh: trimesh.Trimesh, offset: tuple[float, float, float]) -> trimesh.Trimesh:
+    return mesh.apply_translation(offset)
+
+
+def _slab(outline: list[tuple[float, float]], thickness: float) -> trimesh.Trimesh:
+    """A flat convex plate: outline (x, y), centred on z = 0."""
+    flat = np.array(outline)
+    corners = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (-thickness / 2, thickness / 2)])
+    return trimesh.convex.convex_hull(corners)
+
+
+@lru_cache(maxsize=1)
+def aircraft() -> dict[str, trimesh.Trimesh]:
+    """An aircraft of length 2, nose +X, left wing +Y, fin +Z: `hull`, and `mark`, the tip of the left wing."""
+    fuselage = icosphere(subdivisions=3).apply_scale((0.86, 0.13, 0.13))
+    nose = cone(radius=0.085, height=0.3, sections=24)
+    nose.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
+    _moved(nose, (0.68, 0.0, 0.0))
+    canopy = _moved(icosphere(subdivisions=2).apply_scale((0.2, 0.075, 0.09)), (0.3, 0.0, 0.1))
+    wings = _slab([(0.3, 0.0), (-0.02, 0.74), (-0.24, 0.74), (-0.2, 0.0), (-0.24, -0.98), (-0.06, -0.98)], 0.035)
+    right = _slab([(0.26, 0.0), (-0.06, -0.98), (-0.24, -0.98), (-0.22, 0.0)], 0.035)
+    left = _slab([(0.26, 0.0), (0.017, 0.745), (-0.24, 0.745), (-0.22, 0.0)], 0.035)
+    tail = _slab([(-0.6, 0.0), (-0.76, 0.36), (-0.88, 0.36), (-0.84, 0.0), (-0.88, -0.36), (-0.76, -0.36)], 0.028)
+    fin = _slab([(-0.52, 0.0), (-0.78, 0.36), (-0.9, 0.36), (-0.86, 0.0)], 0.03)
+    fin.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
+    del wings
+    mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
+    hull = trimesh.util.concatenate([fuselage, nose, canopy, left, right, tail, fin])
+    return {"hull": hull, "mark": mark}
+
+
+@lru_cache(maxsize=1)
+def camera() -> dict[str, trimesh.Trimesh]:
+    """A camera about 0.3 long that looks along +Z with y down: `body` and `lens`; its centre of projection is the origin."""
+    body = _moved(box((0.24, 0.16, 0.16)), (0.0, 0.0, -0.12))
+    bump = _moved(box((0.1, 0.05, 0.09)), (0.0, -0.1, -0.12))
+    barrel = _moved(cylinder(radius=0.062, height=0.1, sections=32), (0.0, 0.0, 0.0))
+    rim = _moved(cylinder(radius=0.07, height=0.02, sections=32), (0.0, 0.0, 0.05))
+    return {"body": trimesh.util.concatenate([body, bump]), "lens": trimesh.util.concatenate([barrel, rim])}

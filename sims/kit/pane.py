@@ -1,0 +1,122 @@
+"""Image panes: SVG pictures in pixel coordinates, with handles that pointer and keyboard can drag.
+
+A picture is drawn from the same Solution as the scene. Coordinates are pixels: x right, y down, integer
+pixel centres, so the picture's edge runs from -0.5 to width - 0.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+Point = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Pane:
+    """One picture or plot: its name, a title that people see, and the SVG."""
+
+    name: str
+    title: str
+    svg: str
+
+
+class Picture:
+    """Collects SVG in pixel coordinates; what is outside the frame is clipped."""
+
+    def __init__(self, name: str, title: str, width: int = 640, height: int = 480) -> None:
+        self.name, self.title = name, title
+        self.width, self.height = width, height
+        self._parts: list[str] = []
+        self._over: list[str] = []
+
+    def line(self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "") -> None:
+        """A straight stroke; `dash` as in SVG, `role` a colour of the palette."""
+        dashed = f' stroke-dasharray="{dash}"' if dash else ""
+        self._parts.append(
+            f'<line x1="{a[0]:.2f}" y1="{a[1]:.2f}" x2="{b[0]:.2f}" y2="{b[1]:.2f}" stroke="var(--{role})"'
+            f' stroke-width="{width}"{dashed}{css} vector-effect="non-scaling-stroke"/>'
+        )
+
+    def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "") -> None:
+        """The line a x + b y + c = 0 across the whole picture."""
+        ends = across(line, self.width, self.height)
+        if ends:
+            self.line(ends[0], ends[1], role, width=width, dash=dash)
+
+    def arrow(self, a: Point, b: Point, role: str, *, width: float = 2) -> None:
+        """A vector from a to b."""
+        self.line(a, b, role, width=width, css=f' marker-end="url(#{self.name}-tip)"')
+
+    def cross(self, at: Point, role: str, size: float = 9) -> None:
+        """An × mark."""
+        x, y = at[0], at[1]
+        self.line((x - size, y - size), (x + size, y + size), role, width=2.5)
+        self.line((x - size, y + size), (x + size, y - size), role, width=2.5)
+
+    def dot(self, at: Point, role: str, radius: float = 6, *, hollow: bool = False) -> None:
+        """A round mark; hollow for what was measured before."""
+        fill = "none" if hollow else f"var(--{role})"
+        self._parts.append(
+            f'<circle cx="{at[0]:.2f}" cy="{at[1]:.2f}" r="{radius}" fill="{fill}" stroke="var(--{role})"'
+            ' stroke-width="2" vector-effect="non-scaling-stroke"/>'
+        )
+
+    def text(self, at: Point, words: str, role: str = "ink", *, anchor: str = "start", size: float = 26) -> None:
+        """Words, outlined in the page's colour so that they stay readable over lines."""
+        self._over.append(
+            f'<text x="{at[0]:.2f}" y="{at[1]:.2f}" fill="var(--{role})" font-size="{size}" text-anchor="{anchor}"'
+            f' class="s3-halo">{escape(words)}</text>'
+        )
+
+    def handle(self, name: str, at: Point, label: str, letter: str) -> None:
+        """A point that pointer and keyboard can move; the session hears of it under `name`."""
+        self._over.append(
+            f'<g data-handle="{name}" data-x="{at[0]!r}" data-y="{at[1]!r}" tabindex="0" role="application"'
+            f' aria-roledescription="movable point" aria-label="{escape(label)}: {at[0]:.1f}, {at[1]:.1f} pixels.'
+            f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
+            '<circle class="s3-grab" r="36"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
+            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
+        )
+
+    def pane(self) -> Pane:
+        """The finished picture."""
+        w, h, name = self.width, self.height, escape(self.name)
+        frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" class="s3-frame"/>'
+        tip = (
+            f'<marker id="{name}-tip" viewBox="0 0 10 10" refX="8" refY="5" markerWidth="5" markerHeight="5"'
+            ' orient="auto-start-reverse"><path d="M0 0L10 5L0 10z" fill="context-stroke"/></marker>'
+        )
+        clip = f'<clipPath id="{name}-clip"><rect x="-0.5" y="-0.5" width="{w}" height="{h}"/></clipPath>'
+        svg = (
+            f'<svg data-pane="{name}" viewBox="-0.5 -0.5 {w} {h}" role="group" aria-label="{escape(self.title)}">'
+            f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
+            f"{''.join(self._over)}</svg>"
+        )
+        return Pane(self.name, self.title, svg)
+
+
+def across(line: Point, width: float, height: float) -> tuple[Point, Point] | None:
+    """Where a x + b y + c = 0 enters and leaves the picture; None if it misses it."""
+    a, b, c = (float(v) for v in line)
+    left, top, right, bottom = -0.5, -0.5, width - 0.5, height - 0.5
+    found = []
+    if abs(b) > 1e-12:
+        found += [(x, -(a * x + c) / b) for x in (left, right)]
+    if abs(a) > 1e-12:
+        found += [(-(b * y + c) / a, y) for y in (top, bottom)]
+    eps = 1e-6 * (width + height)
+    inside = [p for p in found if left - eps <= p[0] <= right + eps and top - eps <= p[1] <= bottom + eps]
+    if len(inside) < 2:
+        return None
+    far = max(inside[1:], key=lambda p: abs(p[0] - inside[0][0]) + abs(p[1] - inside[0][1]))
+    return inside[0], far
+
+
+def render(panes: Sequence[Pane], style: str) -> str:
+    """All panes of a sim as one piece of HTML; `style` carries the palette."""
+    figures = "".join(
+        f'<figure class="s3-pane"><figcaption>{escape(p.title)}</figcaption>{p.svg}</figure>' for p in panes
+    )
+    return f'<div class="s3-panes" style="{style}">{figures}</div>'

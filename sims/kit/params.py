@@ -1,0 +1,245 @@
+"""The state of a sim: one frozen pydantic model, and its two spellings (query string and JSON).
+
+A field is declared with `number`, `choice`, `switch`, `vector` or `numbers`; what is said there feeds
+the live controls, the link, the JSON schema, validation and the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Any, Self, cast, get_args
+from urllib.parse import urlencode
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic.fields import FieldInfo
+
+LONGEST_VALUE = 400
+"""Characters of one value in a query; a longer one is refused unread."""
+
+
+class Params(BaseModel):
+    """The whole state of a sim. Frozen; `changed` makes the next state."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        """Least and greatest value of a numeric field in this state; override where they depend on it."""
+        return _declared_bounds(type(self), name)
+
+    def label(self, name: str) -> str:
+        """Words beside the control of a field in this state."""
+        return title(type(self).model_fields[name])
+
+    def changed(self, changes: Mapping[str, Any]) -> Self:
+        """The state with some fields replaced, validated; raises pydantic's ValidationError."""
+        return type(self).model_validate({**self.__dict__, **changes})
+
+    def moved(self, changes: Mapping[str, Any]) -> Self:
+        """The state after a live control moved: numbers are kept within their bounds."""
+        state = self.model_copy(update=dict(changes))
+        clamped = {name: state._clamped(name) for name in numeric_fields(type(self))}
+        return self.changed({**changes, **clamped})
+
+    def _clamped(self, name: str) -> Any:
+        value = getattr(self, name)
+        if value is None:
+            return None
+        low, high = self.bounds(name)
+        if isinstance(value, tuple):
+            return tuple(min(max(v, low), high) for v in value)
+        return min(max(value, low), high)
+
+    @model_validator(mode="after")
+    def _within_bounds(self) -> Self:
+        for name in numeric_fields(type(self)):
+            value = getattr(self, name)
+            low, high = self.bounds(name)
+            entries = value if isinstance(value, tuple) else () if value is None else (value,)
+            if not all(low <= v <= high for v in entries):
+                raise ValueError(f"{name} must be from {plain(low)} to {plain(high)}, got {spell(value)}")
+        return self
+
+    def query(self) -> str:
+        """The query string of this state, with default values left out."""
+        return urlencode(self.query_items(), safe=",-.:")
+
+    def query_items(self) -> dict[str, str]:
+        """Name and spelling of every field that isn't at its default."""
+        return {
+            name: spell(value)
+            for name, field in type(self).model_fields.items()
+            if (value := getattr(self, name)) != field.default and value is not None
+        }
+
+    @classmethod
+    def from_query(cls, items: Iterable[tuple[str, str]]) -> Self:
+        """The state that a link names; raises `BadParams` with every complaint."""
+        given, complaints = {}, []
+        aliases = {str(f.alias): n for n, f in cls.model_fields.items() if f.alias}
+        for raw_name, text in items:
+            name = aliases.get(raw_name, raw_name)
+            if name not in cls.model_fields:
+                complaints.append(Complaint(raw_name[:60], clipped(text), "one of: " + ", ".join(cls.model_fields)))
+            elif len(text) > LONGEST_VALUE:
+                complaints.append(Complaint(name, clipped(text), f"at most {LONGEST_VALUE} characters"))
+            else:
+                given[name] = text
+        state, wrong = cls._validated({name: unspell(cls.model_fields[name], text) for name, text in given.items()})
+        complaints += [Complaint(name, clipped(given.get(name, "")), allowed) for name, allowed in wrong.items()]
+        if complaints or state is None:
+            raise BadParams(complaints, {n: t for n, t in given.items() if n not in wrong})
+        return state
+
+    @classmethod
+    def _validated(cls, values: Mapping[str, Any]) -> tuple[Self | None, dict[str, str]]:
+        try:
+            return cls.model_validate(values), {}
+        except ValidationError as error:
+            return None, {field: allowed for field, allowed in _complaints(cls, error)}
+
+
+class Complaint(tuple[str, str, str]):
+    """What was wrong with one parameter: its name, what was received, what is allowed."""
+
+    def __new__(cls, name: str, received: str, allowed: str) -> Complaint:
+        return super().__new__(cls, (name, received, allowed))
+
+
+class BadParams(ValueError):
+    """A link with parameters that the sim can't take; `good` holds the rest, still spelled."""
+
+    def __init__(self, complaints: list[Complaint], good: dict[str, str]) -> None:
+        self.complaints = complaints
+        self.good = good
+        super().__init__("; ".join(f"{name}: got {received!r}, allowed: {allowed}" for name, received, allowed in complaints))
+
+
+def number(
+    default: float, low: float, high: float, *, title: str, description: str, step: float, unit: str = "",
+    symbol: str = "", group: str = "", control: str = "slider",
+) -> Any:
+    """A number with bounds (inclusive) in `unit`. `control`: slider, number or none."""
+    return Field(
+        default, ge=low, le=high, title=title, description=description,
+        json_schema_extra={"step": step, "unit": unit, "symbol": symbol, "group": group, "control": control},
+    )  # fmt: skip
+
+
+def choice(default: str, *, title: str, description: str, labels: Mapping[str, str], group: str = "") -> Any:
+    """One of the words of the field's Literal type; `labels` says how each is shown."""
+    return Field(
+        default, title=title, description=description,
+        json_schema_extra={"labels": dict(labels), "group": group, "control": "choice"},
+    )  # fmt: skip
+
+
+def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:
+    """On or off; 1 or 0 in a link."""
+    return Field(
+        default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"}
+    )
+
+
+def vector(
+    default: tuple[float, ...], low: float, high: float, *, title: str, description: str, step: float,
+    unit: str = "", group: str = "", control: str = "vector",
+) -> Any:
+    """Two or three numbers that belong together, each from `low` to `high`; `1,0.5,2` in a link."""
+    return Field(
+        default, title=title, description=description,
+        json_schema_extra={
+            "step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high,
+        },
+    )  # fmt: skip
+
+
+def extra(field: FieldInfo) -> dict[str, Any]:
+    """What `number`, `choice`, … said about the control."""
+    return cast(dict[str, Any], field.json_schema_extra or {})
+
+
+def title(field: FieldInfo) -> str:
+    """Title with its symbol, as in 'Yaw ψ'."""
+    symbol = extra(field).get("symbol", "")
+    return f"{field.title} {symbol}".strip()
+
+
+@lru_cache(maxsize=1024)
+def _declared_bounds(model: type[Params], name: str) -> tuple[float, float]:
+    return field_bounds(model.model_fields[name])
+
+
+def field_bounds(field: FieldInfo) -> tuple[float, float]:
+    """Declared bounds of a numeric field (of each entry, for vectors)."""
+    hints = extra(field)
+    if "low" in hints:
+        return hints["low"], hints["high"]
+    found = {type(m).__name__: m for m in field.metadata}
+    return found["Ge"].ge, found["Le"].le
+
+
+@lru_cache(maxsize=64)
+def numeric_fields(model: type[Params]) -> tuple[str, ...]:
+    """Names of the fields with bounds."""
+    return tuple(n for n, f in model.model_fields.items() if extra(f).get("step") is not None)
+
+
+def choices(field: FieldInfo) -> tuple[str, ...]:
+    """The words a choice may take; empty for other fields."""
+    return tuple(a for a in get_args(field.annotation) if isinstance(a, str))
+
+
+def spell(value: Any) -> str:
+    """A value as it stands in a link."""
+    if isinstance(value, bool):
+        return "1" if value else "0"
+    if isinstance(value, tuple):
+        return ",".join(spell(v) for v in value)
+    return value if isinstance(value, str) else plain(value)
+
+
+def plain(value: float) -> str:
+    """Shortest decimal spelling that reads back as the same number: 30, 0.5, -1e-09."""
+    value = float(value) + 0.0
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def unspell(field: FieldInfo, text: str) -> Any:
+    """What a link's text stands for, as far as the field's kind says; pydantic judges the rest."""
+    kind = extra(field).get("control")
+    if kind == "switch":
+        return {"1": True, "0": False}.get(text)
+    if isinstance(field.default, tuple):
+        return tuple(text.split(","))
+    return text
+
+
+def clipped(text: Any, length: int = 80) -> str:
+    """Text that is safe to show back: shortened."""
+    text = str(text)
+    return text if len(text) <= length else text[: length - 1] + "…"
+
+
+def allowed_values(field: FieldInfo) -> str:
+    """In words: what a field may be."""
+    kind = extra(field).get("control")
+    if kind == "switch":
+        return "1 or 0"
+    if words := choices(field):
+        return "one of: " + ", ".join(words)
+    low, high = field_bounds(field)
+    span = f"from {plain(low)} to {plain(high)}"
+    if isinstance(field.default, tuple):
+        return f"{len(field.default)} numbers {span}, separated by commas"
+    return f"a number {span}" if field.annotation is not int else f"a whole number {span}"
+
+
+def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[str, str]]:
+    for item in error.errors():
+        if item["loc"]:
+            name = str(item["loc"][0])
+            yield name, allowed_values(model.model_fields[name])
+        else:
+            text = str(item["msg"]).removeprefix("Value error, ")
+            yield text.split(" ", 1)[0], text

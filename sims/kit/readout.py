@@ -1,0 +1,110 @@
+"""Read-outs: numbers and matrices as native MathML, warnings as an icon with words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+MINUS = "−"
+THIN = "\u2009"
+
+
+def figure(value: float, digits: int = 3) -> str:
+    """A number for people: fixed decimals, a true minus sign, no negative zero."""
+    text = f"{value:.{digits}f}"
+    if text[0] == "-":
+        return MINUS + text[1:] if text.strip("-0.") else text[1:]
+    return text
+
+
+def quantity(value: float, unit: str = "", digits: int = 3) -> str:
+    """A number with its unit after a thin space (none before a degree sign)."""
+    gap = "" if unit in ("", "°", "%") else THIN
+    return f"{figure(value, digits)}{gap}{unit}"
+
+
+def _number(value: float, digits: int) -> str:
+    return f"<mn>{figure(value, digits)}</mn>"
+
+
+def mathml(value: Any, digits: int = 3) -> str:
+    """A number, vector (as a column) or matrix in MathML."""
+    array = np.asarray(value, dtype=float)
+    if array.ndim == 0:
+        return _number(float(array), digits)
+    rows = array.tolist() if array.ndim == 2 else [[v] for v in array.tolist()]
+    body = "".join("<mtr>" + "".join(f"<mtd>{_number(v, digits)}</mtd>" for v in row) + "</mtr>" for row in rows)
+    return f"<mrow><mo>[</mo><mtable>{body}</mtable><mo>]</mo></mrow>"
+
+
+def row(values: Sequence[float], digits: int = 3) -> str:
+    """A tuple (a, b, c) in MathML."""
+    inner = "<mo>,</mo>".join(_number(v, digits) for v in values)
+    return f"<mrow><mo>(</mo>{inner}<mo>)</mo></mrow>"
+
+
+def math(*parts: str) -> str:
+    """One formula; the parts are MathML."""
+    return f"<math>{''.join(parts)}</math>"
+
+
+def symbol(name: str, sub: str = "") -> str:
+    """An identifier, upright when it is longer than a letter, with an optional subscript."""
+    base = f"<mi>{escape(name)}</mi>"
+    return f"<msub>{base}<mi>{escape(sub)}</mi></msub>" if sub else base
+
+
+@dataclass(frozen=True)
+class Formula:
+    """`name = value`, where the value is MathML; `note` says in words what it is."""
+
+    note: str
+    name: str
+    value: str
+    unit: str = ""
+
+    def html(self) -> str:
+        unit = f"<mtext>{THIN if self.unit != '°' else ''}{escape(self.unit)}</mtext>" if self.unit else ""
+        left = f"{self.name}<mo>=</mo>" if self.name else ""
+        return f'<div class="s3-formula"><span>{escape(self.note)}</span>{math(left, self.value, unit)}</div>'
+
+
+@dataclass(frozen=True)
+class Table:
+    """A small table of words and numbers; the first row is its head."""
+
+    note: str
+    rows: Sequence[Sequence[str]]
+
+    def html(self) -> str:
+        head, *body = self.rows
+        top = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in head)
+        rest = "".join(
+            "<tr>" + f'<th scope="row">{escape(r[0])}</th>' + "".join(f"<td>{escape(c)}</td>" for c in r[1:]) + "</tr>"
+            for r in body
+        )
+        return f'<table class="s3-table"><caption>{escape(self.note)}</caption><tr>{top}</tr>{rest}</table>'
+
+
+@dataclass(frozen=True)
+class Note:
+    """A sentence; `level` is info, near or warn (the last two carry an icon)."""
+
+    text: str
+    level: str = "info"
+
+    def html(self) -> str:
+        icon = "" if self.level == "info" else '<span aria-hidden="true">⚠</span> '
+        return f'<p class="s3-note s3-{self.level}">{icon}{escape(self.text)}</p>'
+
+
+Readout = Formula | Table | Note
+
+
+def render(readouts: Iterable[Readout]) -> str:
+    """All read-outs of a sim as one piece of HTML."""
+    return '<div class="s3-readouts">' + "".join(r.html() for r in readouts) + "</div>"

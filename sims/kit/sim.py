@@ -1,0 +1,101 @@
+"""What a sim is: its parameters, its mathematics, its scene, and the words around them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from sims.kit.pane import Pane
+from sims.kit.palette import Palette
+from sims.kit.params import Params
+from sims.kit.readout import Readout
+from sims.kit.stage import Stage
+
+P = TypeVar("P", bound=Params)
+S = TypeVar("S")
+
+
+class Scene(Protocol[P, S]):
+    """Viser nodes, built once for one viewer; `draw` assigns what follows from the state."""
+
+    def __init__(self, stage: Stage) -> None: ...
+
+    def draw(self, params: P, solution: S) -> None: ...
+
+
+@dataclass(frozen=True)
+class Step:
+    """One leg of a motion: numbers glide to `changes` within `seconds`; the rest is set at its start."""
+
+    changes: Mapping[str, Any]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Action(Generic[P]):
+    """A button: from a state to the next one, or to a motion that ends in one."""
+
+    name: str
+    label: str
+    hint: str
+    run: Callable[[P], Mapping[str, Any] | Iterator[Step]]
+
+
+@dataclass(frozen=True)
+class View:
+    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
+
+    position: tuple[float, float, float]
+    look_at: tuple[float, float, float]
+    radius: float
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What a learner can do afterwards, with its level in Bloom's taxonomy."""
+
+    text: str
+    level: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sim(Generic[P, S]):
+    """One entry of the registry."""
+
+    slug: str
+    title: str
+    summary: str
+    concepts: tuple[str, ...]
+    objectives: tuple[Objective, ...]
+    params: type[P]
+    solve: Callable[[P], S]
+    scene: type[Scene[P, S]]
+    readouts: Callable[[P, S], Iterable[Readout]]
+    describe: Callable[[P, S], str]
+    view: View
+    actions: Sequence[Action[P]] = ()
+    panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
+    handles: Mapping[str, Callable[[P, tuple[float, float]], Mapping[str, Any]]] = field(default_factory=dict)
+    states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    heavy: bool = False
+    """Solving can take over 5 ms: it runs in the pool, beside the event loop."""
+
+
+def jsonable(value: Any) -> Any:
+    """A Solution as JSON: arrays as nested lists by rows; what doesn't exist (NaN, infinite) as null."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: jsonable(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, np.ndarray):
+        return jsonable(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(k): jsonable(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [jsonable(v) for v in value]
+    if isinstance(value, np.generic):
+        return jsonable(value.item())
+    if isinstance(value, float):
+        return value + 0.0 if np.isfinite(value) else None
+    return value

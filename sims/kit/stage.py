@@ -1,0 +1,251 @@
+"""The scene of one viewer: viser nodes in the colours of the theme, each with its cheapest setter.
+
+Names are kinematic: `/body/nose` moves with `/body`. Lines keep a constant width in pixels, labels a
+constant size on the screen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import trimesh
+import viser
+
+from sims.kit.palette import AXES, Palette
+from sims.kit.viser_internals import set_pose
+
+Vector = Sequence[float] | npt.NDArray[np.float64]
+Quaternion = tuple[float, float, float, float]
+Drag = Callable[["Dragged"], None]
+IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Dragged:
+    """A pointer that holds a node: where the node would go (world, metres)."""
+
+    position: tuple[float, float, float]
+    finished: bool
+
+
+class Node:
+    """A drawn thing with a pose relative to its parent."""
+
+    def __init__(self, handle: Any) -> None:
+        self.handle = handle
+
+    def pose(self, wxyz: Sequence[float] | None = None, position: Vector | None = None) -> None:
+        set_pose(
+            self.handle,
+            None if wxyz is None else (float(wxyz[0]), float(wxyz[1]), float(wxyz[2]), float(wxyz[3])),
+            None if position is None else (float(position[0]), float(position[1]), float(position[2])),
+        )
+
+    def show(self, visible: bool) -> None:
+        self.handle.visible = visible
+
+
+class Lines(Node):
+    """Separate straight pieces; dashes are pieces too."""
+
+    def __init__(self, handle: Any, rgb: tuple[int, int, int], dash: tuple[float, float] | None) -> None:
+        super().__init__(handle)
+        self._rgb = rgb
+        self._dash = dash
+
+    def path(self, points: npt.ArrayLike) -> None:
+        """Draw a polyline through points of shape (n, 3)."""
+        self.pieces(dashes(np.asarray(points, dtype=float), self._dash))
+
+    def pieces(self, pieces: npt.NDArray[np.float64]) -> None:
+        """Draw pieces of shape (n, 2, 3)."""
+        shape = self.handle.points.shape
+        if pieces.shape != shape:
+            self.handle.colors = np.broadcast_to(np.array(self._rgb, np.uint8), pieces.shape)
+        self.handle.points = pieces
+
+    def arc(self, radius: float, angle: float, start: float = 0.0) -> None:
+        """Draw a circular arc in the node's own xy plane, counter-clockwise from its x axis (radians)."""
+        self.path(arc_points(radius, angle, start))
+
+
+class Label(Node):
+    """Words at a place; constant size on the screen."""
+
+    def text(self, text: str) -> None:
+        self.handle.text = text
+
+
+class Arrow(Node):
+    """An arrow whose ends move."""
+
+    def between(self, tail: Vector, tip: Vector) -> None:
+        self.handle.points = np.array([[tail, tip]], dtype=np.float32)
+
+
+def arc_points(radius: float, angle: float, start: float = 0.0) -> npt.NDArray[np.float64]:
+    """Points (n, 3) along an arc in the xy plane; n is fixed so that updates keep their size."""
+    turn = np.linspace(start, start + angle, 49)
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros_like(turn)])
+
+
+def dashes(points: npt.NDArray[np.float64], dash: tuple[float, float] | None) -> npt.NDArray[np.float64]:
+    """A polyline (n, 3) as pieces (m, 2, 3): its segments, or dashes of (on, off) metres along it."""
+    if dash is None or len(points) < 2:
+        return np.stack([points[:-1], points[1:]], axis=1)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    on, off = dash
+    starts = np.arange(0.0, max(along[-1], 1e-9), on + off)[:400]
+    ends = np.minimum(starts + on, along[-1])
+    sample = [np.column_stack([np.interp(s, along, points[:, k]) for k in range(3)]) for s in (starts, ends)]
+    return np.stack(sample, axis=1)
+
+
+class Stage:
+    """Makes nodes for one viewer."""
+
+    def __init__(self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Dragged], None]) -> None:
+        self.client = client
+        self.scene = client.scene
+        self.palette = palette
+        self._drag = drag
+
+    def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> None:
+        """The light floor grid, and soft light from above."""
+        grey = (58, 66, 76) if self.palette.dark else (222, 226, 230)
+        section = (78, 88, 100) if self.palette.dark else (200, 206, 212)
+        self.scene.add_grid(
+            "/ground", width=size, height=size, plane="xy", cell_size=cell, section_size=2 * cell,
+            cell_color=grey, section_color=section, cell_thickness=0.6, section_thickness=0.9,
+            position=(0.0, 0.0, height), shadow_opacity=0.0,
+        )  # fmt: skip
+        self.scene.configure_default_lights(cast_shadow=False)
+
+    def group(self, name: str) -> Node:
+        """An invisible frame that others hang on."""
+        return Node(self.scene.add_frame(name, show_axes=False))
+
+    def axes(
+        self, name: str, length: float, *, radius: float = 0.012, letters: Sequence[str] | None = AXES,
+        ghost: bool = False,
+    ) -> Node:  # fmt: skip
+        """A coordinate frame: three arrows in axis colours with letters at their tips.
+
+        A ghost (a frame before or between) is thin, dashed per axis, and has no heads.
+        """
+        frame = self.group(name)
+        unit = np.eye(3) * length
+        colors = np.array([self.palette.rgb(a) for a in AXES], np.uint8)
+        if ghost:
+            patterns = {"x": (length, 0.0), "y": (0.12, 0.05), "z": (0.05, 0.05)}
+            for axis, tip in zip(AXES, unit, strict=True):
+                self.lines(f"{name}/{axis}", [np.zeros(3), tip], axis, width=1.5, dash=patterns[axis])
+        else:
+            self.scene.add_arrows(
+                f"{name}/arrows", points=np.stack([np.zeros((3, 3)), unit], axis=1),
+                colors=colors, shaft_radius=radius, head_radius=2.6 * radius,
+                head_length=7 * radius,
+            )  # fmt: skip
+        for axis, word, tip in zip(AXES, letters or (), unit, strict=False):
+            self.label(f"{name}/letter_{axis}", word.upper() if len(word) == 1 else word, tip * 1.08)
+        return frame
+
+    def lines(
+        self, name: str, points: npt.ArrayLike, role: str, *, width: float = 2.0,
+        dash: tuple[float, float] | None = None,
+    ) -> Lines:  # fmt: skip
+        """A polyline through points (n, 3); `role` is a colour of the palette, `dash` its (on, off) in metres."""
+        pieces = dashes(np.asarray(points, dtype=float), dash)
+        rgb = self.palette.rgb(role)
+        handle = self.scene.add_line_segments(
+            name, points=pieces, colors=np.broadcast_to(np.array(rgb, np.uint8), pieces.shape),
+            thickness=width, thickness_units="screen",
+        )  # fmt: skip
+        return Lines(handle, rgb, dash)
+
+    def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrow:
+        """An arrow from tail to tip."""
+        handle = self.scene.add_arrows(
+            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.rgb(role),
+            shaft_radius=radius, head_radius=2.6 * radius, head_length=7 * radius,
+        )  # fmt: skip
+        return Arrow(handle)
+
+    def label(self, name: str, text: str, position: Vector = (0.0, 0.0, 0.0), *, anchor: Any = "center-center") -> Label:
+        """Words in the scene."""
+        handle = self.scene.add_label(name, text, position=_triple(position), anchor=anchor, font_screen_scale=1.15)
+        return Label(handle)
+
+    def mesh(
+        self, name: str, body: trimesh.Trimesh, role: str | tuple[int, int, int], *, opacity: float | None = None,
+        side: Any = "front", flat: bool = False,
+    ) -> Node:  # fmt: skip
+        """A solid body in one colour."""
+        color = role if isinstance(role, tuple) else self.palette.rgb(role)
+        handle = self.scene.add_mesh_simple(
+            name, vertices=body.vertices, faces=body.faces, color=color, opacity=opacity, side=side,
+            flat_shading=flat, cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+        return Node(handle)
+
+    def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None) -> Node:
+        """A small sphere."""
+        handle = self.scene.add_icosphere(
+            name, radius=radius, subdivisions=3, color=self.palette.rgb(role), opacity=opacity,
+            cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+        return Node(handle)
+
+    def cloud(self, name: str, points: npt.NDArray[np.float64], role: str, *, size: float = 0.01) -> Node:
+        """Many small dots of one colour, sent as float32."""
+        handle = self.scene.add_point_cloud(
+            name, points=points.astype(np.float32), colors=self.palette.rgb(role), point_size=size,
+            point_shape="circle", precision="float32",
+        )  # fmt: skip
+        return Node(handle)
+
+    def grip(self, name: str, radius: float, role: str = "held") -> Node:
+        """A ball with a ring halo that the pointer can drag; the session hears of it under `name`.
+
+        It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
+        """
+        ball = self.ball(name, radius, role)
+        ring = trimesh.creation.torus(major_radius=1.7 * radius, minor_radius=0.12 * radius, major_sections=48, minor_sections=8)
+        for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])]):
+            self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
+        self._listen(ball.handle, name)
+        return ball
+
+    def _listen(self, handle: Any, name: str) -> None:
+        offset = np.zeros(3)
+        origin = np.zeros(3)
+
+        def moved(event: Any, straight: bool) -> None:
+            nonlocal offset, origin
+            if event.phase == "start":
+                origin = np.array(handle.position)
+                offset = origin - np.array(event.start_position)
+            target = np.array(event.end_position) + offset
+            if straight:
+                pull = target - origin
+                keep = np.argmax(np.abs(pull))
+                target = origin + np.where(np.arange(3) == keep, pull, 0.0)
+            place = (float(target[0]), float(target[1]), float(target[2]))
+            self._drag(name, Dragged(place, event.phase == "end"))
+
+        @handle.on_drag("left")  # type: ignore[untyped-decorator]
+        async def _(event: Any) -> None:
+            moved(event, straight=False)
+
+        @handle.on_drag("left", modifier="shift")  # type: ignore[untyped-decorator]
+        async def _(event: Any) -> None:
+            moved(event, straight=True)
+
+
+def _triple(vector: Vector) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])

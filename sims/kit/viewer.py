@@ -1,0 +1,191 @@
+"""One browser looking at a session: controls made from Params, the scene, image panes and read-outs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import viser
+
+from sims.kit import pane, readout
+from sims.kit.palette import DARK, LIGHT
+from sims.kit.params import Params, choices, extra, field_bounds
+from sims.kit.sim import Sim
+from sims.kit.stage import Dragged, Stage
+from sims.kit.viser_internals import set_value
+
+ACCENT = (11, 95, 215)
+
+
+class Host(Protocol):
+    """What a viewer tells its session."""
+
+    def change(self, changes: Mapping[str, Any]) -> None: ...
+
+    def act(self, name: str) -> None: ...
+
+    def drag(self, name: str, place: tuple[float, ...]) -> None: ...
+
+
+@dataclass(frozen=True)
+class Look:
+    """What the viewer's page said of itself."""
+
+    dark: bool = False
+    narrow: bool = False
+    controls: bool = True
+    watching: bool = False
+
+
+@dataclass
+class Control:
+    """A viser control of one field, with the way from its value to the parameter's and back."""
+
+    name: str
+    handle: Any
+    to_control: Callable[[Any], Any]
+    bounded: bool
+
+    def draw(self, params: Params) -> None:
+        if self.bounded:
+            low, high = params.bounds(self.name)
+            if (self.handle.min, self.handle.max) != (low, high):
+                self.handle.min, self.handle.max = low, high
+        label = worded(params, self.name)
+        if self.handle.label != label:
+            self.handle.label = label
+        set_value(self.handle, self.to_control(getattr(params, self.name)))
+
+
+class Viewer:
+    """Everything that one viser client shows."""
+
+    def __init__(self, sim: Sim[Any, Any], client: viser.ClientHandle, host: Host, look: Look, params: Params) -> None:
+        self.sim = sim
+        self.client = client
+        self.look = look
+        self.palette = DARK if look.dark else LIGHT
+        self._host = host
+        client.gui.configure_theme(
+            dark_mode=look.dark, show_logo=False, show_share_button=False, brand_color=ACCENT,
+        )  # fmt: skip
+        client.gui.set_panel_label(sim.title)
+        self._dock()
+        self._panes = self._add_panes()
+        self._controls: list[Control] = []
+        self._readouts: viser.GuiHtmlHandle | None = None
+        if look.controls:
+            self._add_controls(params)
+        self.scene = sim.scene(Stage(client, self.palette, self._dragged))
+
+    def draw(self, params: Params, solution: Any) -> None:
+        """Show a state; only what differs is sent."""
+        self.scene.draw(params, solution)
+        for control in self._controls:
+            control.draw(params)
+        if self._readouts is not None:
+            self._readouts.content = readout.render(self.sim.readouts(params, solution))
+        if self._panes is not None and self.sim.panes is not None:
+            self._panes.content = pane.render(
+                self.sim.panes(params, solution, self.palette), self.palette.style()
+            )
+        self.client.flush()
+
+    def _dock(self) -> None:
+        panel = self.client.gui.main_panel
+        panel.dock_right()
+        panel.set_width(300 if self.look.narrow else 340)
+
+    def _add_panes(self) -> viser.GuiHtmlHandle | None:
+        if self.sim.panes is None:
+            return None
+        panel = self.client.gui.add_panel()
+        with panel.add_tab("Pictures"):
+            html = self.client.gui.add_html("")
+        if self.look.narrow:
+            panel.dock_above(self.client.gui.main_panel)
+        else:
+            panel.dock_left()
+            panel.set_width(330)
+        return html
+
+    def _add_controls(self, params: Params) -> None:
+        gui = self.client.gui
+        model = type(params)
+        groups: dict[str, list[str]] = {}
+        for name, field in model.model_fields.items():
+            if extra(field).get("control", "none") != "none":
+                groups.setdefault(extra(field).get("group", ""), []).append(name)
+        for group, names in groups.items():
+            with gui.add_folder(group or "Parameters", expand_by_default=not group):
+                self._controls += [self._control(params, name) for name in names]
+        with gui.add_folder("Actions"):
+            for action in self.sim.actions:
+                self._button(action.label, action.hint, action.name)
+            self._button("Reset", "Back to the state of the link that you opened", "reset")
+            gui.add_html(TOOLBAR)
+        with gui.add_folder("Read-outs"):
+            self._readouts = gui.add_html("")
+
+    def _button(self, label: str, hint: str, name: str) -> None:
+        button = self.client.gui.add_button(label, hint=hint, disabled=self.look.watching)
+
+        @button.on_click
+        async def _(_: Any) -> None:
+            self._host.act(name)
+
+    def _control(self, params: Params, name: str) -> Control:
+        field = type(params).model_fields[name]
+        hints = extra(field)
+        value = getattr(params, name)
+        gui = self.client.gui
+        shared: dict[str, Any] = {"hint": field.description, "disabled": self.look.watching}
+        label = worded(params, name)
+        same: Callable[[Any], Any] = lambda v: v  # noqa: E731
+        from_control, to_control, bounded = same, same, False
+        handle: Any
+        if hints["control"] == "choice":
+            labels = {word: hints["labels"][word] for word in choices(field)}
+            words = {shown: word for word, shown in labels.items()}
+            from_control, to_control = words.__getitem__, labels.__getitem__
+            handle = gui.add_dropdown(label, tuple(words), initial_value=labels[value], **shared)
+        elif hints["control"] == "switch":
+            handle = gui.add_checkbox(label, value, **shared)
+        elif isinstance(field.default, tuple):
+            add = gui.add_vector2 if len(field.default) == 2 else gui.add_vector3
+            low, high = field_bounds(field)
+            ends = {"min": (low,) * len(value), "max": (high,) * len(value)}
+            handle = add(label, value, step=hints["step"], **ends, **shared)
+        elif hints["control"] == "number":
+            low, high = params.bounds(name)
+            handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
+        else:
+            low, high = params.bounds(name)
+            bounded = True
+            handle = gui.add_slider(label, low, high, hints["step"], value, **shared)
+
+        @handle.on_update
+        async def _(_: Any) -> None:
+            self._host.change({name: from_control(handle.value)})
+
+        return Control(name, handle, to_control, bounded)
+
+    def _dragged(self, name: str, dragged: Dragged) -> None:
+        if not self.look.watching:
+            self._host.drag(name, dragged.position)
+
+
+def worded(params: Params, name: str) -> str:
+    """The label of a control, with its unit."""
+    unit = extra(type(params).model_fields[name]).get("unit", "")
+    return f"{params.label(name)} ({unit})" if unit else params.label(name)
+
+
+TOOLBAR = (
+    '<div class="s3-toolbar">'
+    '<button type="button" data-s3="share">Share link</button>'
+    '<button type="button" data-s3="picture">Save picture</button>'
+    '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
+    "</div>"
+)

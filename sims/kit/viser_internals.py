@@ -1,0 +1,148 @@
+"""The only place that touches what viser doesn't publish. `tests/sims/test_viser_internals.py` pins each name.
+
+Why each is needed:
+
+- viser serves its own socket, and its server accepts any Origin and any message. `ViserHost` starts it
+  without a socket: viewers reach it only through a `Wire` that the bridge feeds with messages it has checked.
+- The path of a viewer's websocket (which says whose session it is) isn't in viser's public API.
+- viser's pose setters skip a change that `np.allclose` calls equal (relative 1e-5), so what is drawn could lag
+  behind what is shown, and they cost 40 µs each. `set_pose` compares exactly and costs a tenth.
+- Assigning a control's value calls its own callbacks again; `set_value` doesn't.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections import deque
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest import mock
+
+import viser
+import websockets.asyncio.server
+from viser import _messages
+from websockets.exceptions import ConnectionClosedOK
+
+PROTOCOL = f"viser-v{viser.__version__}"
+CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
+
+
+class Wire:
+    """What viser sees as one viewer's websocket; the bridge holds its other end."""
+
+    def __init__(self, send: Callable[[bytes], Awaitable[None]], context: Any, protocol: str = PROTOCOL) -> None:
+        self.subprotocol = protocol
+        self.context = context
+        self.closed = asyncio.Event()
+        self._send = send
+        self._waiting: deque[bytes] = deque()
+        self._newest: dict[str, int] = {}
+        self._taken = 0
+        self._arrived = asyncio.Event()
+
+    def feed(self, message: bytes, value_of: str | None = None) -> None:
+        """Hand a message to viser. Of waiting messages with the same `value_of`, only the newest goes on.
+
+        A message without `value_of` (a press, a drag's end) keeps its place: later values don't overtake it.
+        """
+        at = self._newest.get(value_of, -1) - self._taken if value_of else -1
+        if at >= 0:
+            self._waiting[at] = message
+            return
+        if value_of:
+            self._newest[value_of] = self._taken + len(self._waiting)
+        else:
+            self._newest.clear()
+        self._waiting.append(message)
+        self._arrived.set()
+
+    def hang_up(self) -> None:
+        """Tell viser that the viewer is gone."""
+        self.closed.set()
+        self._arrived.set()
+
+    async def recv(self) -> bytes:
+        while not self._waiting:
+            if self.closed.is_set():
+                raise ConnectionClosedOK(None, None)
+            self._arrived.clear()
+            await self._arrived.wait()
+        self._taken += 1
+        return self._waiting.popleft()
+
+    async def send(self, data: bytes) -> None:
+        if self.closed.is_set():
+            raise ConnectionClosedOK(None, None)
+        await self._send(data)
+
+    async def close(self, code: int = 1000, reason: str = "") -> None:
+        self.hang_up()
+
+
+class ViserHost:
+    """One viser server per process, on its own event loop and without a socket."""
+
+    def __init__(self) -> None:
+        captured: dict[str, Any] = {}
+
+        @asynccontextmanager
+        async def serve(handler: Any, *_: Any, **__: Any) -> AsyncIterator[Any]:
+            captured["handler"] = handler
+            yield SimpleNamespace(server=SimpleNamespace(sockets=[]))
+
+        with mock.patch.object(websockets.asyncio.server, "serve", serve), redirect_stdout(StringIO()):
+            self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        self._handler: Callable[[Wire], Awaitable[None]] = captured["handler"]
+        self.loop: asyncio.AbstractEventLoop = self.server.get_event_loop()
+
+    async def connect(self, wire: Wire) -> None:
+        """Run one viewer's connection until it ends. Call on `loop`."""
+        await self._handler(wire)
+
+    def wire_of(self, client: viser.ClientHandle) -> Wire:
+        """The connection that a client handle belongs to."""
+        return self.server._websock_server._live_connections[client.client_id]  # type: ignore[return-value]
+
+    def stop(self) -> None:
+        """End viser's loop and thread."""
+        with redirect_stdout(StringIO()):
+            self.server.stop()
+
+
+def set_pose(
+    node: viser.SceneNodeHandle,
+    wxyz: tuple[float, float, float, float] | None = None,
+    position: tuple[float, float, float] | None = None,
+) -> None:
+    """Assign a node's orientation and position where they differ at all from the last ones."""
+    impl = node._impl
+    if wxyz is not None and tuple(impl.wxyz) != wxyz:
+        impl.wxyz[:] = wxyz
+        impl.api._queue_scene_message(_messages.SetOrientationMessage(impl.name, wxyz))
+    if position is not None and tuple(impl.position) != position:
+        impl.position[:] = position
+        impl.api._queue_scene_message(_messages.SetPositionMessage(impl.name, position))
+
+
+def set_value(control: Any, value: Any) -> None:
+    """Show a value in a control without calling its callbacks."""
+    impl = control._impl
+    if impl.value != value:
+        impl.value = value
+        impl.gui_api._websock_interface.queue_message(_messages.GuiUpdateMessage(impl.uuid, {"value": value}))
+
+
+def control_id(control: Any) -> str:
+    """The identifier that a control has in the page."""
+    return str(control._impl.uuid)
+
+
+@functools.cache
+def client_page() -> str:
+    """viser's own client, one HTML file."""
+    return CLIENT_PAGE.read_text(encoding="utf-8")

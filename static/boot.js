@@ -1,0 +1,42 @@
+// Runs before viser's client and tells it three things through the address, where it looks for them: which
+// websocket is this page's, whether the theme is dark, and from where to look. sim.js restores the address.
+(() => {
+  const sim = JSON.parse(document.getElementById("sim3").textContent);
+  const given = new URLSearchParams(location.search);
+  const bytes = crypto.getRandomValues(new Uint8Array(8));
+  const viewer = Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
+  const theme = given.get("theme");
+  const dark = theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  const path = location.pathname.replace(/\/?$/, "/");
+  const origin = location.origin === "null" ? new URL(location.href).origin : location.origin;
+  const socket = origin.replace(/^http/, "ws") + path;
+
+  // A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits.
+  const view = given.get("view")?.split(",").map(Number) ?? sim.view;
+  const eye = view.slice(0, 3);
+  const target = view.slice(3);
+  if (!given.get("view")) {
+    const phone = innerWidth <= 576;
+    const panel = phone || given.get("controls") === "0" ? 0 : innerWidth < 900 ? 300 : 340 + (sim.panes ? 330 : 0);
+    const width = innerWidth - panel;
+    const height = phone ? innerHeight * 0.55 : innerHeight;
+    const half = Math.tan(0.35) * Math.min(1, width / height) * (height / innerHeight);
+    const distance = Math.hypot(...eye.map((v, i) => v - target[i]));
+    const scale = sim.radius / Math.sin(Math.atan(half)) / distance;
+    eye.forEach((v, i) => (eye[i] = target[i] + (v - target[i]) * scale));
+    // On a phone the bottom sheet covers the lower part: look lower, so that the scene stands above it.
+    if (phone) target[2] -= (eye[2] -= sim.radius * 0.75) && sim.radius * 0.75;
+  }
+
+  const search = new URLSearchParams({
+    websocket: `${socket}?viewer=${viewer}`,
+    initialCameraPosition: eye.join(","),
+    initialCameraLookAt: target.join(","),
+    initialCameraFov: "0.7",
+  });
+  if (dark) search.set("darkMode", "1");
+  window.sim3 = { ...sim, viewer, dark, path: socket, search: location.search, eye, target };
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+  document.documentElement.style.colorScheme = dark ? "dark" : "light";
+  history.replaceState(null, "", "?" + search);
+})();

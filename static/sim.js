@@ -1,0 +1,350 @@
+// The companion of viser's client. It keeps the address equal to the state, lets pointers and keys move handles in
+// image panes, gives viser's controls accessible names, speaks what changed, and talks to the page around the sim.
+const sim = window.sim3;
+const embedded = window.parent !== window;
+const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+const options = ["view", "controls", "theme"];
+const kept = new URLSearchParams();
+for (const [name, value] of new URLSearchParams(sim.search)) if (options.includes(name)) kept.append(name, value);
+let query = stateQuery(sim.search);
+let socket = null;
+let retryAfter = 250;
+let state = null;
+
+// --- Address -----------------------------------------------------------------------------------------------------
+
+function stateQuery(search) {
+  const given = new URLSearchParams(search);
+  for (const name of options) given.delete(name);
+  return given.toString();
+}
+
+function withOptions(search) {
+  return [search, readable(kept)].filter(Boolean).join("&");
+}
+
+function readable(search) {
+  return search.toString().replaceAll("%2C", ",");
+}
+
+function address() {
+  const search = withOptions(query);
+  return location.pathname + (search ? "?" + search : "");
+}
+
+// viser reads its websocket and viewpoint from the address when it starts; until then the address is boot.js's.
+function showAddress() {
+  if (document.querySelector("canvas")) history.replaceState(null, "", address());
+}
+
+// --- Channel -----------------------------------------------------------------------------------------------------
+
+function connect() {
+  socket = new WebSocket(`${sim.path}channel?viewer=${sim.viewer}`);
+  socket.onopen = () => {
+    retryAfter = 250;
+    send({
+      type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth,
+      controls: kept.get("controls") !== "0", query,
+    });
+  };
+  socket.onmessage = (event) => receive(JSON.parse(event.data));
+  socket.onclose = () => {
+    socket = null;
+    setTimeout(connect, retryAfter);
+    retryAfter = Math.min(retryAfter * 2, 4000);
+  };
+}
+
+function send(message) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+}
+
+function receive(message) {
+  if (message.type === "state") {
+    state = message;
+    query = message.query;
+    showAddress();
+    speak(message.text);
+    describeScene(message.text);
+    post({ type: "sim3:state", params: message.params, query });
+  } else if (message.type === "error") {
+    notify("⚠ " + message.message);
+    post({ type: "sim3:error", message: message.message });
+  }
+}
+
+// viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
+document.hasFocus = () => document.visibilityState === "visible";
+
+// --- Words -------------------------------------------------------------------------------------------------------
+
+function element(tag, attributes, parent = document.body) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  parent.append(node);
+  return node;
+}
+
+const live = element("div", { "aria-live": "polite", role: "status", class: "s3-hidden" });
+const notice = element("div", { role: "alert", class: "s3-notice", hidden: "" });
+let speaking = 0;
+let hiding = 0;
+
+function speak(text) {
+  clearTimeout(speaking);
+  speaking = setTimeout(() => (live.textContent = text), 700);
+}
+
+function notify(text) {
+  notice.textContent = text;
+  notice.hidden = false;
+  clearTimeout(hiding);
+  hiding = setTimeout(() => (notice.hidden = true), 6000);
+}
+
+function describeScene(text) {
+  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  if (!canvas) return;
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `${sim.title}, 3D scene. ${text}`);
+}
+
+// --- Image panes: viser replaces their markup at each update, so everything listens at the document ----------------
+
+let held = null;
+let sentAt = 0;
+let waiting = 0;
+
+function place(event, svg) {
+  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+  return { x: point.x, y: point.y };
+}
+
+function within(value, low, high) {
+  return Math.min(Math.max(value, low), high);
+}
+
+function moveTo(name, at, svgName) {
+  const box = document.querySelector(`svg[data-pane="${svgName}"]`).viewBox.baseVal;
+  const x = Math.round(within(at.x, 0, box.width - 1) * 100) / 100;
+  const y = Math.round(within(at.y, 0, box.height - 1) * 100) / 100;
+  held = { ...held, name, svgName, x, y };
+  const due = sentAt + 40 - performance.now();
+  clearTimeout(waiting);
+  waiting = setTimeout(() => {
+    sentAt = performance.now();
+    send({ type: "handle", name, x, y });
+  }, Math.max(due, 0));
+}
+
+document.addEventListener("pointerdown", (event) => {
+  const grip = event.target.closest?.("[data-handle]");
+  if (!grip || sim.watching || event.button !== 0) return;
+  event.preventDefault();
+  event.stopPropagation();
+  const svg = grip.closest("svg");
+  const start = place(event, svg);
+  grip.focus({ preventScroll: true });
+  held = {
+    pointer: event.pointerId, dx: Number(grip.dataset.x) - start.x, dy: Number(grip.dataset.y) - start.y,
+    name: grip.dataset.handle, svgName: svg.dataset.pane,
+  };
+  document.documentElement.classList.add("s3-holding");
+}, true);
+
+document.addEventListener("pointermove", (event) => {
+  if (held?.pointer !== event.pointerId) return;
+  event.preventDefault();
+  const svg = document.querySelector(`svg[data-pane="${held.svgName}"]`);
+  if (!svg) return;
+  const at = place(event, svg);
+  moveTo(held.name, { x: at.x + held.dx, y: at.y + held.dy }, held.svgName);
+}, true);
+
+for (const kind of ["pointerup", "pointercancel"]) {
+  document.addEventListener(kind, (event) => {
+    if (held?.pointer !== event.pointerId) return;
+    held = null;
+    document.documentElement.classList.remove("s3-holding");
+  }, true);
+}
+
+// Fingers that hold a handle must not scroll the panel.
+document.addEventListener("touchmove", (event) => held && event.preventDefault(), { passive: false, capture: true });
+
+const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+document.addEventListener("keydown", (event) => {
+  const grip = event.target.closest?.("[data-handle]");
+  if (grip && arrows[event.key] && !sim.watching) {
+    event.preventDefault();
+    const [dx, dy] = arrows[event.key];
+    const step = event.shiftKey ? 10 : event.altKey ? 0.1 : 1;
+    const name = grip.dataset.handle;
+    const last = keyed?.name === name && performance.now() - keyed.at < 400 ? keyed : null;
+    const x = (last ? last.x : Number(grip.dataset.x)) + dx * step;
+    const y = (last ? last.y : Number(grip.dataset.y)) + dy * step;
+    moveTo(name, { x, y }, grip.closest("svg").dataset.pane);
+    keyed = { name, x: held.x, y: held.y, at: performance.now() };
+    held = null;
+  } else if (event.key === "?" && !/^(INPUT|TEXTAREA)$/.test(event.target.tagName)) {
+    showKeys();
+  }
+}, true);
+
+let keyed = null;
+
+// --- viser's page: names for its controls, marks on its sliders, focus kept when a pane is redrawn -----------------
+
+function nameControls(root) {
+  for (const label of root.querySelectorAll("label[for]")) {
+    const control = document.getElementById(label.htmlFor);
+    if (!control) continue;
+    const name = label.textContent;
+    const row = control.parentElement;
+    for (const part of row.querySelectorAll("[role=slider], input")) {
+      if (part.getAttribute("aria-label") !== name) part.setAttribute("aria-label", name);
+    }
+  }
+}
+
+function markSliders() {
+  const data = document.querySelector("[data-s3-regions]");
+  if (!data) return;
+  for (const [label, spans] of Object.entries(JSON.parse(data.dataset.s3Regions))) {
+    for (const node of document.querySelectorAll("label[for]")) {
+      if (node.textContent !== label) continue;
+      const track = document.getElementById(node.htmlFor)?.querySelector(".mantine-Slider-trackContainer, .mantine-Slider-track");
+      if (!track) continue;
+      const wanted = spans.map(([from, to]) => `${from},${to}`).join(";");
+      if (track.dataset.regions === wanted) continue;
+      track.dataset.regions = wanted;
+      track.querySelectorAll(".s3-region").forEach((old) => old.remove());
+      for (const [from, to] of spans) {
+        const mark = element("span", { class: "s3-region", title: "near gimbal lock" }, track);
+        mark.style.left = `${100 * from}%`;
+        mark.style.width = `${100 * (to - from)}%`;
+      }
+    }
+  }
+}
+
+let focused = null;
+
+document.addEventListener("focusin", (event) => {
+  const grip = event.target.closest?.("[data-handle]");
+  focused = grip ? grip.dataset.handle : null;
+});
+
+let tidying = false;
+
+new MutationObserver(() => {
+  if (tidying) return;
+  tidying = true;
+  requestAnimationFrame(() => {
+    tidying = false;
+    nameControls(document);
+    markSliders();
+    dismissSoftwareNotice();
+    if (focused && !document.activeElement?.closest?.("[data-handle]") && document.activeElement === document.body) {
+      document.querySelector(`[data-handle="${focused}"]`)?.focus({ preventScroll: true });
+    }
+    goLive();
+  });
+}).observe(document.body, { childList: true, subtree: true });
+
+// viser's hint about software rendering would stand over the scene on every school machine without a GPU.
+function dismissSoftwareNotice() {
+  for (const note of document.querySelectorAll(".mantine-Notification-root")) {
+    if (/Software WebGL/.test(note.textContent)) note.querySelector("button")?.click();
+  }
+}
+
+// --- Still picture until the scene is live ------------------------------------------------------------------------
+
+const still = element("div", { class: "s3-still", "aria-hidden": "true" });
+still.style.backgroundImage = `url(${sim.still[sim.dark ? "dark" : "light"]})`;
+
+function goLive() {
+  if (sim.live || !state || !document.querySelector("canvas")) return;
+  if (kept.get("controls") !== "0" && !document.querySelector(".s3-readouts")) return;
+  sim.live = true;
+  showAddress();
+  still.classList.add("s3-gone");
+  setTimeout(() => still.remove(), 400);
+  describeScene(state.text);
+  post({ type: "sim3:ready" });
+  post({ type: "sim3:height", height: document.documentElement.scrollHeight });
+}
+
+// --- Toolbar -----------------------------------------------------------------------------------------------------
+
+document.addEventListener("click", (event) => {
+  const kind = event.target.closest?.("[data-s3]")?.dataset.s3;
+  if (kind === "share") share();
+  else if (kind === "picture") savePicture();
+  else if (kind === "keys") showKeys();
+  else if (kind === "close") event.target.closest("dialog").close();
+});
+
+function shareLink() {
+  const path = location.pathname.replace(/\/s\/.*/, "/embed");
+  const search = withOptions(query);
+  return path + (search ? "?" + search : "");
+}
+
+async function share() {
+  const link = new URL(shareLink(), location.href).href;
+  try {
+    await navigator.clipboard.writeText(link);
+    notify("Link copied. It opens this sim in exactly this state.");
+  } catch {
+    dialog("Link to this state", `<p><input class="s3-link" readonly aria-label="Link" value=""></p>`);
+    const field = document.querySelector(".s3-link");
+    field.value = link;
+    field.select();
+  }
+}
+
+function savePicture() {
+  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  requestAnimationFrame(() => {
+    const link = element("a", { href: canvas.toDataURL("image/png"), download: `${sim.slug}.png` });
+    link.click();
+    link.remove();
+  });
+}
+
+function dialog(title, html) {
+  document.querySelector("dialog.s3-dialog")?.remove();
+  const box = element("dialog", { class: "s3-dialog", "aria-label": title });
+  box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close" autofocus>Close</button>`;
+  box.showModal();
+}
+
+function showKeys() {
+  dialog("Keys", `<table>
+    <tr><th scope="row"><kbd>Tab</kbd></th><td>next control or point</td></tr>
+    <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> on a slider</th><td>one step</td></tr>
+    <tr><th scope="row">arrow keys on a point in a picture</th><td>one pixel; with <kbd>Shift</kbd> ten, with <kbd>Alt</kbd> a tenth</td></tr>
+    <tr><th scope="row">drag in the scene</th><td>turn the view; right button moves it, wheel zooms</td></tr>
+    <tr><th scope="row">drag a ringed point</th><td>move it; with <kbd>Shift</kbd> along one axis</td></tr>
+    <tr><th scope="row"><kbd>?</kbd></th><td>these keys</td></tr></table>`);
+}
+
+// --- The page around the sim ---------------------------------------------------------------------------------------
+
+function post(message) {
+  if (embedded) window.parent.postMessage({ slug: sim.slug, ...message }, "*");
+}
+
+addEventListener("message", (event) => {
+  if (event.source !== window.parent || !embedded || typeof event.data !== "object" || event.data === null) return;
+  const { type, params, name } = event.data;
+  if (type === "sim3:set") send({ type: "set", params });
+  else if (type === "sim3:action") send({ type: "action", name });
+  else if (type === "sim3:get") send({ type: "get" });
+});
+
+connect();
