@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Array, components, norm, stack
-from .errors import GeometryError, as_array, as_finite_array, as_number
+from .arrays import Array, components, if_positive, norm, stack
+from .errors import GeometryError, as_array, as_number
 from .rotations import as_rotation
 
 # Columns are the camera's x, y and z in the world, for a level camera that looks along the world's +Y.
@@ -29,10 +29,10 @@ class Camera:
     T_camera_world: Array
 
     def __post_init__(self) -> None:
-        K = as_finite_array("K", self.K, 3, 3).copy()
-        T = as_finite_array("T_camera_world", self.T_camera_world, 4, 4).copy()
-        _check(K, T)
-        for name, array in (("K", K), ("T_camera_world", T)):
+        for name, array in (
+            ("K", _checked_intrinsics(self.K)),
+            ("T_camera_world", _checked_pose(self.T_camera_world)),
+        ):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
 
@@ -56,12 +56,17 @@ class Camera:
 
     @cached_property
     def K_inverse(self) -> Array:
-        """Inverse (3, 3) of K: from homogeneous pixels to directions in camera axes."""
+        """Inverse (3, 3) of K: from homogeneous pixels to directions in camera axes, at z = 1."""
         (fx, skew, cx), (_, fy, cy), _ = self.K.tolist()
         across = -skew / (fx * fy)
         return np.array(
             [[1.0 / fx, across, -cx / fx - across * cy], [0.0, 1.0 / fy, -cy / fy], [0.0, 0.0, 1.0]]
         )
+
+    @cached_property
+    def back_projection(self) -> Array:
+        """(K R)⁻¹, (3, 3): from homogeneous pixels to directions in the world, at depth 1."""
+        return self.R.T.dot(self.K_inverse)
 
     @cached_property
     def P(self) -> Array:
@@ -71,11 +76,11 @@ class Camera:
     @cached_property
     def center(self) -> Array:
         """Centre of projection −Rᵀt, (3,), in the world."""
-        return -(self.t @ self.R)
+        return -self.t.dot(self.R)
 
     def to_camera(self, points: npt.ArrayLike) -> Array:
         """Return world points (..., 3) in camera coordinates, in metres."""
-        return np.asarray(as_array("points", points, 3) @ self.R.T + self.t)
+        return np.asarray(as_array("points", points, 3).dot(self.R.T) + self.t)
 
     def project(self, points: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the pixels (..., 2) of world points (..., 3), and their depths (...) along z in metres.
@@ -83,14 +88,13 @@ class Camera:
         A point that isn't in front of the camera (depth ≤ 0), or isn't finite, has no pixel: NaN.
         Source: Hartley and Zisserman 2004, eq. 6.8.
         """
+        (fx, skew, cx), (_, fy, cy), _ = self.K.tolist()
         with np.errstate(all="ignore"):
             x, y, depth = components(self.to_camera(points))
-            depth = np.asarray(depth)
-            z = np.where(depth > 0.0, depth, np.nan)
-            (fx, skew, cx), (_, fy, cy), _ = self.K.tolist()
-            pixels = stack((fx * x + skew * y) / z + cx, fy * y / z + cy)
-            seen = np.isfinite(pixels).all(axis=-1) & np.isfinite(depth)
-        return np.where(seen[..., None], pixels, np.nan), depth
+            z = if_positive(depth)
+            u, v = (fx * x + skew * y) / z + cx, fy * y / z + cy
+            nothing = (u + v + z) - (u + v + z)  # zero, but NaN where any of them is infinite
+            return stack(u + nothing, v + nothing), np.asarray(depth)
 
     def normalized(self, pixels: npt.ArrayLike) -> Array:
         """Return pixels (..., 2) as normalised image coordinates: where their rays meet the plane z = 1."""
@@ -102,17 +106,16 @@ class Camera:
     def pixel_ray(self, pixels: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the origin (3,) and unit directions (..., 3), in the world, of the rays of pixels (..., 2)."""
         x, y = components(self.normalized(pixels))
-        directions = stack(x, y, 1.0 + 0.0 * x) @ self.R
+        directions = stack(x, y, 1.0 + 0.0 * x).dot(self.R)
         return self.center, directions / norm(directions)[..., None]
 
     def fov(self, width: float, height: float) -> tuple[float, float]:
-        """Return the horizontal and vertical field of view in radians of an image of width × height pixels.
+        """Return the horizontal and the vertical field of view in radians of an image of width × height pixels.
 
-        Between opposite edges of the true, off-centre frustum, measured in the camera's xz and yz planes;
-        with integer pixel centres the edges are at −½ and width − ½.
+        Between opposite edges of the true, off-centre frustum, in the camera's xz and yz planes. With integer
+        pixel centres the edges are at −½ and width − ½.
         """
-        as_number("width", width, above=0.0)
-        as_number("height", height, above=0.0)
+        width, height = as_number("width", width, above=0.0), as_number("height", height, above=0.0)
         (fx, _, cx), (_, fy, cy), _ = self.K.tolist()
         horizontal = math.atan((width - 0.5 - cx) / fx) - math.atan((-0.5 - cx) / fx)
         return horizontal, math.atan((height - 0.5 - cy) / fy) - math.atan((-0.5 - cy) / fy)
@@ -122,28 +125,40 @@ class Camera:
 
         In the picture's order: top left, top right, bottom right, bottom left.
         """
-        as_number("depth", depth, above=0.0)
         right, bottom = (
             as_number("width", width, above=0.0) - 0.5,
             as_number("height", height, above=0.0) - 0.5,
         )
-        corners = self.normalized([[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]])
-        return self.center + depth * (np.column_stack([corners, np.ones(4)]) @ self.R)
+        corners = [[-0.5, -0.5, 1.0], [right, -0.5, 1.0], [right, bottom, 1.0], [-0.5, bottom, 1.0]]
+        directions = np.array(corners) @ self.K_inverse.T @ self.R
+        return self.center + as_number("depth", depth, above=0.0) * directions
 
 
-def _check(K: Array, T: Array) -> None:
-    if K.shape != (3, 3) or T.shape != (4, 4):
-        raise GeometryError(
-            "camera", f"K {K.shape} and T_camera_world {T.shape}", "one K (3, 3) and one T (4, 4)"
-        )
-    (fx, _, _), (k10, fy, _), last = K.tolist()
-    if min(fx, fy) <= 0.0 or k10 != 0.0 or last != [0.0, 0.0, 1.0]:
+def _checked_intrinsics(K: Array) -> Array:
+    K = np.array(K, dtype=np.float64)
+    flat = K.ravel().tolist()
+    triangular = len(flat) == 9 and flat[3:4] + flat[6:] == [0.0, 0.0, 0.0, 1.0]
+    if (
+        not triangular
+        or K.shape != (3, 3)
+        or not all(map(math.isfinite, flat))
+        or min(flat[0], flat[4]) <= 0.0
+    ):
         raise GeometryError(
             "K", K.tolist(), "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0"
         )
-    if T[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
-        raise GeometryError("T_camera_world", T.tolist(), "a rigid transform with last row (0, 0, 0, 1)")
+    return K
+
+
+def _checked_pose(T: Array) -> Array:
+    T = np.array(T, dtype=np.float64)
+    rigid = T.shape == (4, 4) and T[3].tolist() == [0.0, 0.0, 0.0, 1.0]
+    if not rigid or not all(map(math.isfinite, T[:3, 3].tolist())):
+        raise GeometryError(
+            "T_camera_world", T.tolist(), "one rigid transform (4, 4) with last row (0, 0, 0, 1)"
+        )
     as_rotation("T_camera_world", T[:3, :3])
+    return T
 
 
 def parallel_rig(
@@ -155,11 +170,9 @@ def parallel_rig(
     Raises GeometryError for a negative baseline or a focal length that isn't positive.
     """
     half = 0.5 * as_number("baseline", baseline, least=0.0)
-    R = R_WORLD_LEVEL.T
-    cameras = []
-    for x in (-half, half):
-        T = np.eye(4)
-        T[:3, :3] = R
-        T[:3, 3] = -R @ (x, 0.0, height)
-        cameras.append(Camera.from_intrinsics(focal, focal, *principal_point, T_camera_world=T))
-    return cameras[0], cameras[1]
+    return _level(-half, height, focal, principal_point), _level(half, height, focal, principal_point)
+
+
+def _level(x: float, height: float, focal: float, principal_point: tuple[float, float]) -> Camera:
+    T = np.array([[1.0, 0.0, 0.0, -x], [0.0, 0.0, -1.0, height], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    return Camera.from_intrinsics(focal, focal, *principal_point, T_camera_world=T)

@@ -1,4 +1,4 @@
-"""The least correction of a pair of pixels by the polynomial of Hartley and Sturm, which has all the minima."""
+"""The least correction of a pair of pixels by the polynomial of Hartley and Sturm, whose roots are all minima."""
 
 import numpy as np
 from numpy.polynomial.polynomial import polymul, polyroots, polysub
@@ -6,13 +6,13 @@ from numpy.polynomial.polynomial import polymul, polyroots, polysub
 from ..arrays import Array
 
 
-def least_correction(F: Array, left: Array, right: Array) -> Array:
-    """Return (Δleft, Δright), (4,), the shortest with (right + Δright)^T F (left + Δleft) = 0, for points (2,).
+def least_correction(F: Array, pair: Array) -> Array:
+    """Return the shortest (Δleft, Δright), (4,), with (right + Δright)^T F (left + Δleft) = 0, for a pair (4,).
 
-    F (3, 3) has rank 2, and the points are neither its epipoles nor badly scaled.
+    F (3, 3) has rank 2, and the points of the pair are neither its epipoles nor badly scaled.
     Source: Hartley and Sturm 1997, "Triangulation", sec. 4.2; Hartley and Zisserman 2004, algorithm 12.1.
     """
-    centred = _shift(right).T @ F @ _shift(left)
+    centred = _shift(pair[2:]).T @ F @ _shift(pair[:2])
     U, _, Vt = np.linalg.svd(centred)
     (turn_left, f), (turn_right, g) = _epipole_on_x(Vt[2]), _epipole_on_x(U[:, 2])
     (a, b), (c, d) = (turn_right @ centred @ turn_left.T)[1:, 1:].tolist()
@@ -28,13 +28,10 @@ def least_correction(F: Array, left: Array, right: Array) -> Array:
 def _stationary(a: float, b: float, c: float, d: float, f: float, g: float) -> tuple[Array, Array]:
     """Return the pencil's lines t : s at which the distance may be least: the real parts of all roots, and t : 0."""
     p, q = [b, a], [d, c]
-    right = polymul(p, p) + g**2 * polymul(q, q)
-    left = [1.0, 0.0, f**2]
-    slope = polysub(
-        polymul([0.0, 1.0], polymul(right, right)),
-        (a * d - b * c) * polymul(polymul(left, left), polymul(p, q)),
-    )
-    roots = polyroots(slope).real
+    left, right = np.array([1.0, 0.0, f**2]), polymul(p, p) + g**2 * polymul(q, q)
+    rise = polymul([0.0, 1.0], polymul(right, right))
+    fall = (a * d - b * c) * polymul(polymul(left, left), polymul(p, q))
+    roots = polyroots(polysub(rise, fall)).real
     return np.append(roots, 1.0), np.append(np.ones_like(roots), 0.0)
 
 

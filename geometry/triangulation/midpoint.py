@@ -1,11 +1,12 @@
-"""The mid-point method: half-way between the nearest points of the two rays."""
+"""The mid-point method: half-way between the nearest points of the two lines of sight."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Mask, cross, dot, norm
+from ..arrays import Array, Components, components, cross, dot, ratio, stack
 from ..camera import Camera
 from ..epipolar import baseline
 from .result import Triangulation, conclude, pixel_pairs
@@ -15,7 +16,7 @@ from .result import Triangulation, conclude, pixel_pairs
 class Midpoint(Triangulation):
     """A Triangulation with the `gap` (...) between the lines of sight in metres, and their nearest points.
 
-    `closest` (..., 2, 3) has the point of the left line, then of the right; NaN where the rays are parallel.
+    `closest` (..., 2, 3) has the point of the left line, then of the right; NaN where the lines are parallel.
     """
 
     gap: Array
@@ -25,40 +26,47 @@ class Midpoint(Triangulation):
 def triangulate_midpoint(
     left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike
 ) -> Midpoint:
-    """Triangulate pixels (..., 2) by the middle of the common perpendicular of their rays, in closed form.
+    """Triangulate pixels (..., 2) by the middle of the lines' common perpendicular, in closed form.
 
     Quick, and good for a wide baseline; it degrades near the epipoles and isn't projectively invariant.
     Raises GeometryError at zero baseline.
     Source: Hartley and Sturm 1997, "Triangulation", sec. 5.3.
     """
     between = baseline(left, right)
-    pixels_left, pixels_right, defined = pixel_pairs(uv_left, uv_right)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        closest, gap, ahead = nearest_points(left, right, between, pixels_left, pixels_right)
-        fields = conclude(
-            left, right, between, 0.5 * (closest[..., 0, :] + closest[..., 1, :]), ahead, defined
-        )
-    infinite = ~np.isfinite(closest).all(axis=(-2, -1), keepdims=True) | ~defined[..., None, None]
-    return Midpoint(*fields, np.where(defined, gap, np.nan), np.where(infinite, np.nan, closest))
+    pairs, defined = pixel_pairs(uv_left, uv_right)
+    with np.errstate(all="ignore"):
+        on_left, on_right, gap, ahead = nearest_points(left, right, between, components(pairs))
+        middle = [0.5 * (x + y) for x, y in zip(on_left, on_right, strict=True)]
+        fields = conclude((left, right), between, middle, ahead, defined)
+        both = stack(*on_left, *on_right).reshape(*defined.shape, 2, 3)
+    return Midpoint(*fields, np.where(defined, gap, np.nan), np.where(defined[..., None, None], both, np.nan))
 
 
 def nearest_points(
-    left: Camera, right: Camera, between: Array, pixels_left: Array, pixels_right: Array
-) -> tuple[Array, Array, Mask]:
-    """Return the nearest points (..., 2, 3) of two lines of sight, the gap (...), and which lie ahead on both rays."""
-    origin_left, toward_left = left.pixel_ray(pixels_left)
-    origin_right, toward_right = right.pixel_ray(pixels_right)
+    left: Camera, right: Camera, between: Array, pair: Components
+) -> tuple[Any, Any, Any, Any]:
+    """Return the nearest points of two lines of sight (components), their gap, and whether both are ahead."""
+    base = between.tolist()
+    toward_left, toward_right = _direction(left, *pair[:2]), _direction(right, *pair[2:])
     normal = cross(toward_left, toward_right)
     squared = dot(normal, normal)
-    along_left = dot(cross(between, toward_right), normal) / squared
-    along_right = dot(cross(between, toward_left), normal) / squared
-    closest = [
-        origin_left + along_left[..., None] * toward_left,
-        origin_right + along_right[..., None] * toward_right,
-    ]
-    skew_gap, parallel_gap = (
-        np.abs(dot(between, normal)) / np.sqrt(squared),
-        norm(cross(between, toward_left)),
+    along_left = ratio(dot(cross(base, toward_right), normal), squared)
+    along_right = ratio(dot(cross(base, toward_left), normal), squared)
+    on_left = [c + along_left * d for c, d in zip(left.center.tolist(), toward_left, strict=True)]
+    on_right = [c + along_right * d for c, d in zip(right.center.tolist(), toward_right, strict=True)]
+    return (
+        on_left,
+        on_right,
+        _gap(base, toward_left, normal, squared),
+        (along_left > 0.0) & (along_right > 0.0),
     )
-    gap = np.where(squared > 0.0, skew_gap, parallel_gap)
-    return np.stack(closest, axis=-2), gap, (along_left > 0.0) & (along_right > 0.0)
+
+
+def _direction(camera: Camera, u: Any, v: Any) -> list[Any]:
+    return [a * u + b * v + c for a, b, c in camera.back_projection.tolist()]
+
+
+def _gap(base: Components, toward: Components, normal: Components, squared: Any) -> Any:
+    apart = cross(base, toward)
+    parallel = (dot(apart, apart) / dot(toward, toward)) ** 0.5
+    return np.where(squared > 0.0, ratio(abs(dot(base, normal)), squared**0.5), parallel)

@@ -1,4 +1,4 @@
-"""What a triangulation answers: the point, whether there is one and why not, and how well the rays determine it."""
+"""What a triangulation answers: the point, whether there is one and why not, and how well the rays fix it."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -6,11 +6,11 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Mask, cross, dot, norm
+from ..arrays import Array, Components, Mask, cross, dot, norm, stack
 from ..camera import Camera
 from ..errors import as_array
 
-PARALLEL = 1e-12  # radians; rounding alone turns rays by more than a thousandth of it
+PARALLEL = 1e-12  # radians; rounding alone turns a ray by a thousandth of it
 FARTHEST_PIXEL = 1e9
 
 
@@ -25,9 +25,9 @@ class Status(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Triangulation:
-    """Triangulated points: `point` (..., 3) in metres in the world, NaN where there is none, and `status` (...) says why.
+    """The `point` (..., 3) in metres in the world, NaN where there is none; the `status` (...) says why.
 
-    `parallax` (...) is the angle in radians between the rays at the point: the smaller, the less sure the depth.
+    `parallax` (...) is the angle in radians at which the lines of sight meet: the smaller, the less sure the depth.
     """
 
     point: Array
@@ -45,41 +45,47 @@ class Triangulation:
         return np.asarray((self.status == Status.FOUND) | (self.status == Status.PARALLEL))
 
 
-def pixel_pairs(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> tuple[Array, Array, Mask]:
-    """Return pixels (..., 2) of equal shape, and which pairs are defined, (...); the others are set to zero."""
-    left, right = np.broadcast_arrays(as_array("uv_left", uv_left, 2), as_array("uv_right", uv_right, 2))
-    defined = ((np.abs(left) <= FARTHEST_PIXEL) & (np.abs(right) <= FARTHEST_PIXEL)).all(axis=-1)
-    if defined.all():
-        return left, right, defined
-    return np.where(defined[..., None], left, 0.0), np.where(defined[..., None], right, 0.0), defined
+def pixel_pairs(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> tuple[Array, Mask]:
+    """Return pairs of pixels as (..., 4), and a mask (...) of the defined ones; the others are set to zero."""
+    left, right = as_array("uv_left", uv_left, 2), as_array("uv_right", uv_right, 2)
+    if left.shape != right.shape:
+        left, right = np.broadcast_arrays(left, right)
+    pairs = np.concatenate([left, right], axis=-1)
+    defined = (np.abs(pairs) <= FARTHEST_PIXEL).all(axis=-1)
+    return (pairs if defined.all() else np.where(defined[..., None], pairs, 0.0)), defined
 
 
 def conclude(
-    left: Camera, right: Camera, between: Array, points: Array, ahead: Mask, defined: Mask
+    cameras: tuple[Camera, Camera], between: Array, point: Components, ahead: Mask | bool, defined: Mask
 ) -> tuple[Array, npt.NDArray[np.int_], Array]:
-    """Return the fields of a Triangulation from points (..., 3), infinite or NaN where the rays are parallel.
+    """Return the fields of a Triangulation from a point's components, not finite where the rays are parallel.
 
-    `ahead` (...) is what the method itself knows of being in front; `defined` (...) is from `pixel_pairs`.
+    `between` (3,) is the baseline, `ahead` (...) what the method itself knows of being in front.
     """
-    finite = np.isfinite(points).all(axis=-1)
-    sight = np.where(finite[..., None], points, 0.0) - left.center
-    # The cross product with the other line of sight would lose the parallax of distant points.
-    parallax = np.arctan2(norm(cross(sight, between)), dot(sight, sight - between))
-    infinite = ~finite | (parallax <= PARALLEL)
-    depths = [points @ camera.R[2] + camera.t[2] for camera in (left, right)]
-    ahead = ahead & (depths[0] > 0.0) & (depths[1] > 0.0)
-    status = np.where(infinite, Status.PARALLEL, np.where(ahead, Status.FOUND, Status.BEHIND))
+    sight = [x - c for x, c in zip(point, cameras[0].center.tolist(), strict=True)]
+    base = between.tolist()
+    # Crossed with the baseline: crossed with the other line of sight, a distant point would lose its parallax.
+    sine, cosine = dot(*(2 * (cross(sight, base),))) ** 0.5, dot(sight, sight) - dot(sight, base)
+    parallax = np.arctan2(sine, cosine)
+    finite = np.isfinite(point[0] + point[1] + point[2]) & (parallax > PARALLEL)
+    for camera in cameras:
+        ahead = ahead & (dot(camera.R[2].tolist(), point) + float(camera.t[2]) > 0.0)
+    status = np.where(finite, np.where(ahead, Status.FOUND, Status.BEHIND), Status.PARALLEL)
     status = np.where(defined, status, Status.UNDEFINED)
-    point = np.where((status == Status.FOUND)[..., None], points, np.nan)
-    return point, status, np.where(defined, np.where(finite, parallax, 0.0), np.nan)
+    found = (status == Status.FOUND)[..., None]
+    return (
+        np.where(found, stack(*point), np.nan),
+        status,
+        np.where(defined, np.where(finite, parallax, 0.0), np.nan),
+    )
 
 
 def reprojection_errors(
     left: Camera, right: Camera, point: npt.ArrayLike, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike
 ) -> Array:
-    """Return the distances (..., 2) in pixels from where points (..., 3) project to where they were measured.
+    """Return the distances (..., 2) in pixels, left and right, from points (..., 3) to their measured pixels (..., 2).
 
-    Left, then right; NaN where a point has no pixel.
+    NaN where a point has no pixel.
     """
-    errors = [left.project(point)[0] - uv_left, right.project(point)[0] - uv_right]
-    return np.stack([norm(error) for error in errors], axis=-1)
+    measured = ((left, as_array("uv_left", uv_left, 2)), (right, as_array("uv_right", uv_right, 2)))
+    return stack(*(norm(camera.project(point)[0] - pixels) for camera, pixels in measured))

@@ -3,12 +3,44 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
 
 RGB = tuple[int, int, int]
 
 
-def _rgb(text: str) -> RGB:
+def rgb(text: str) -> RGB:
+    """Red, green, blue, 0–255, of #rrggbb."""
     return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+@lru_cache(maxsize=256)
+def before_tone_mapping(text: str, *, linear: bool = False) -> RGB:
+    """The colour to send so that the browser shows #rrggbb.
+
+    viser's renderer applies three.js's filmic curve to everything; this is its inverse. Line colours are taken
+    as linear light there (`linear`), mesh colours as sRGB. Source: Hill's ACES fit, as in three.js.
+    """
+    shown = np.array(rgb(text)) / 255.0
+    light = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+    y = np.clip(np.linalg.solve(_FROM_FILM, light), 0.0, 0.999)
+    a, b, c = 1.0 - 0.983729 * y, 0.0245786 - 0.4329510 * y, -0.000090537 - 0.238081 * y
+    film = (-b + np.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)
+    sent = np.clip(0.6 * np.linalg.solve(_TO_FILM, film), 0.0, 1.0)
+    if not linear:
+        sent = np.where(sent <= 0.0031308, 12.92 * sent, 1.055 * sent ** (1 / 2.4) - 0.055)
+    red, green, blue = np.rint(255.0 * sent).astype(int).tolist()
+    return red, green, blue
+
+
+_TO_FILM: npt.NDArray[np.float64] = np.array(
+    [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]]
+)
+_FROM_FILM: npt.NDArray[np.float64] = np.array(
+    [[1.60475, -0.53108, -0.07367], [-0.10208, 1.10813, -0.00605], [-0.00327, -0.07276, 1.07602]]
+)
 
 
 @dataclass(frozen=True)
@@ -27,9 +59,13 @@ class Palette:
     page: str
     dark: bool
 
-    def rgb(self, role: str) -> RGB:
-        """Red, green, blue, 0–255, of a role."""
-        return _rgb(getattr(self, role))
+    def surface(self, role: str) -> RGB:
+        """What to send for a mesh of a role, so that it shows in the role's colour."""
+        return before_tone_mapping(getattr(self, role))
+
+    def line(self, role: str) -> RGB:
+        """What to send for lines of a role, so that they show in the role's colour."""
+        return before_tone_mapping(getattr(self, role), linear=True)
 
     def style(self) -> str:
         """CSS custom properties (`--x: #…`) for an image pane."""

@@ -140,7 +140,7 @@ class Stage:
         """
         frame = self.group(name)
         unit = np.eye(3) * length
-        colors = np.array([self.palette.rgb(a) for a in AXES], np.uint8)
+        colors = np.array([self.palette.surface(a) for a in AXES], np.uint8)
         if ghost:
             patterns = {"x": (length, 0.0), "y": (0.12, 0.05), "z": (0.05, 0.05)}
             for axis, tip in zip(AXES, unit, strict=True):
@@ -161,7 +161,7 @@ class Stage:
     ) -> Lines:  # fmt: skip
         """A polyline through points (n, 3); `role` is a colour of the palette, `dash` its (on, off) in metres."""
         pieces = dashes(np.asarray(points, dtype=float), dash)
-        rgb = self.palette.rgb(role)
+        rgb = self.palette.line(role)
         handle = self.scene.add_line_segments(
             name, points=pieces, colors=np.broadcast_to(np.array(rgb, np.uint8), pieces.shape),
             thickness=width, thickness_units="screen",
@@ -171,7 +171,7 @@ class Stage:
     def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrow:
         """An arrow from tail to tip."""
         handle = self.scene.add_arrows(
-            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.rgb(role),
+            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.surface(role),
             shaft_radius=radius, head_radius=2.6 * radius, head_length=7 * radius,
         )  # fmt: skip
         return Arrow(handle)
@@ -186,7 +186,7 @@ class Stage:
         side: Any = "front", flat: bool = False,
     ) -> Node:  # fmt: skip
         """A solid body in one colour."""
-        color = role if isinstance(role, tuple) else self.palette.rgb(role)
+        color = role if isinstance(role, tuple) else self.palette.surface(role)
         handle = self.scene.add_mesh_simple(
             name, vertices=body.vertices, faces=body.faces, color=color, opacity=opacity, side=side,
             flat_shading=flat, cast_shadow=False, receive_shadow=False,
@@ -196,7 +196,7 @@ class Stage:
     def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None) -> Node:
         """A small sphere."""
         handle = self.scene.add_icosphere(
-            name, radius=radius, subdivisions=3, color=self.palette.rgb(role), opacity=opacity,
+            name, radius=radius, subdivisions=3, color=self.palette.surface(role), opacity=opacity,
             cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
         return Node(handle)
@@ -204,7 +204,7 @@ class Stage:
     def cloud(self, name: str, points: npt.NDArray[np.float64], role: str, *, size: float = 0.01) -> Node:
         """Many small dots of one colour, sent as float32."""
         handle = self.scene.add_point_cloud(
-            name, points=points.astype(np.float32), colors=self.palette.rgb(role), point_size=size,
+            name, points=points.astype(np.float32), colors=self.palette.surface(role), point_size=size,
             point_shape="circle", precision="float32",
         )  # fmt: skip
         return Node(handle)
