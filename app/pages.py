@@ -14,7 +14,8 @@ from fastapi.responses import HTMLResponse, Response
 from starlette.templating import Jinja2Templates
 
 from app.settings import ROOT
-from sims.kit.params import BadParams, Complaint
+from sims import SIMS
+from sims.kit.params import Complaint
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import client_page
 
@@ -32,8 +33,9 @@ def base(request: Request) -> str:
 
 @functools.cache
 def fingerprint(name: str) -> str:
-    """A short hash of a static file, so that browsers may keep it for ever."""
-    return hashlib.sha256((ROOT / "static" / name).read_bytes()).hexdigest()[:10]
+    """A short hash of a static file, so that browsers may keep it for ever; empty while there is no such file."""
+    path = ROOT / "static" / name
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:10] if path.is_file() else ""
 
 
 def static(request: Request, name: str) -> str:
@@ -43,7 +45,7 @@ def static(request: Request, name: str) -> str:
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
     """An HTML page from a template."""
-    shared = {"base": base(request), "static": functools.partial(static, request)}
+    shared = {"base": base(request), "static": functools.partial(static, request), "sims": SIMS, "status": status}
     return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
 
 
@@ -52,8 +54,8 @@ def split_options(items: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], 
     return [i for i in items if i[0] not in OPTIONS], dict(i for i in items if i[0] in OPTIONS)
 
 
-def check_options(options: dict[str, str]) -> None:
-    """Refuse page options that can't be. Raises BadParams."""
+def bad_options(options: dict[str, str]) -> list[Complaint]:
+    """What is wrong with page options."""
     complaints = []
     if (theme := options.get("theme", "light")) not in ("light", "dark"):
         complaints.append(Complaint("theme", theme[:80], "light or dark"))
@@ -61,8 +63,7 @@ def check_options(options: dict[str, str]) -> None:
         complaints.append(Complaint("controls", controls[:80], "1 or 0"))
     if "view" in options and not _is_view(options["view"]):
         complaints.append(Complaint("view", options["view"][:80], "six numbers: viewpoint x,y,z and look-at x,y,z"))
-    if complaints:
-        raise BadParams(complaints, {})
+    return complaints
 
 
 def _is_view(text: str) -> bool:
@@ -78,10 +79,11 @@ def viewer(request: Request, sim: AnySim, *, watching: bool) -> Response:
     data = {
         "slug": sim.slug, "title": sim.title, "watching": watching,
         "view": [*sim.view.position, *sim.view.look_at], "radius": sim.view.radius, "panes": sim.panes is not None,
-        "still": {theme: f"{base(request)}/static/thumbs/{sim.slug}-{theme}.webp" for theme in ("light", "dark")},
+        "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     head = (
         f"<title>{escape(sim.title)} — Sim3</title>"
+        f'<link rel="icon" href="{static(request, "icons/sim3.svg")}" type="image/svg+xml">'
         f'<link rel="stylesheet" href="{static(request, "tokens.css")}">'
         f'<link rel="stylesheet" href="{static(request, "viewer.css")}">'
         f'<script id="sim3" type="application/json">{json.dumps(data).replace("<", chr(92) + "u003c")}</script>'

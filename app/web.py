@@ -71,15 +71,21 @@ def sim_or_404(slug: str) -> AnySim:
 def _params(sim: AnySim, request: Request) -> Params:
     """Parameters of a link; page options are checked too. Raises BadParams."""
     items, options = pages.split_options(request.query_params.multi_items())
-    pages.check_options(options)
-    params = sim.params.from_query(items)
+    wrong = pages.bad_options(options)
+    kept = {name: text for name, text in options.items() if name not in {w[0] for w in wrong}}
+    try:
+        params = sim.params.from_query(items)
+    except BadParams as error:
+        raise BadParams([*error.complaints, *wrong], {**error.good, **kept}) from None
+    if wrong:
+        raise BadParams(wrong, {**dict(items), **kept})
     return params
 
 
 def _add_pages(app: FastAPI, sessions: Sessions) -> None:
     @app.get("/", response_class=HTMLResponse, include_in_schema=False)
     async def launcher(request: Request) -> Response:
-        return pages.render(request, "launcher.html", sims=SIMS)
+        return pages.render(request, "launcher.html")
 
     @app.get("/sims/{slug}", response_class=HTMLResponse, include_in_schema=False)
     async def lesson(request: Request, slug: str) -> Response:
@@ -188,7 +194,7 @@ def _add_errors(app: FastAPI) -> None:
     async def bad_params(request: Request, error: BadParams) -> Response:
         sim = by_slug(request.path_params.get("slug", ""))
         return pages.render(
-            request, "bad_params.html", status=422, sim=sim, complaints=error.complaints, good=urlencode(error.good)
+            request, "bad_params.html", status=422, sim=sim, complaints=error.complaints, good=urlencode(error.good, safe=",-.:")
         )
 
     @app.exception_handler(RequestValidationError)

@@ -1,7 +1,7 @@
 """The array types of the package, and the helpers that let one formula serve one item and a batch.
 
-A vector taken apart is a sequence of components: floats for one vector, arrays for a batch. Arithmetic on floats
-is some ten times as fast as on small arrays, and the formula reads the same.
+A vector taken apart is a sequence of components: floats for one vector, arrays for a batch. Arithmetic on
+floats is some ten times as fast as on small arrays, and the formula reads the same.
 """
 
 import math
@@ -54,6 +54,18 @@ def ratio(numerator: Any, denominator: Any) -> Any:
     return numerator / np.where(denominator == 0.0, np.nan, denominator)
 
 
+def square_root(value: Any) -> Any:
+    """Square root of a float or an array, NaN below zero."""
+    if isinstance(value, float):
+        return math.sqrt(value) if value >= 0.0 else math.nan
+    return np.sqrt(value)
+
+
+def everywhere(condition: Any) -> bool:
+    """Whether a condition on floats, or on arrays, holds throughout."""
+    return condition if isinstance(condition, bool) else bool(condition.all())
+
+
 def if_positive(value: Any) -> Any:
     """Return a float or an array where it is above zero, NaN elsewhere."""
     if isinstance(value, float):
@@ -80,7 +92,7 @@ def product(A: Array, B: Array) -> Array:
 
 
 def each(function: Callable[[Any], Sequence[float]], array: Array, core: int, width: int) -> Array:
-    """Apply a function of nested lists of floats to each item, the last `core` dimensions, giving (..., width).
+    """Apply a function of nested lists of floats to each item, the last `core` dimensions, to (..., width).
 
     For formulas that branch: simpler than masked array arithmetic, and quicker up to thousands of items.
     """

@@ -22,7 +22,7 @@ class Camera:
 
     Raises GeometryError if K isn't upper triangular with positive focal lengths and last row (0, 0, 1), or if
     T_camera_world isn't a rigid transform.
-    Source: Hartley and Zisserman 2004, eqs. 6.8 and 6.9.
+    Source: Hartley and Zisserman 2004, sec. 6.1.
     """
 
     K: Array
@@ -66,7 +66,7 @@ class Camera:
     @cached_property
     def back_projection(self) -> Array:
         """(K R)⁻¹, (3, 3): from homogeneous pixels to directions in the world, at depth 1."""
-        return self.R.T.dot(self.K_inverse)
+        return np.asarray(self.R.T.dot(self.K_inverse))
 
     @cached_property
     def P(self) -> Array:
@@ -76,7 +76,7 @@ class Camera:
     @cached_property
     def center(self) -> Array:
         """Centre of projection −Rᵀt, (3,), in the world."""
-        return -self.t.dot(self.R)
+        return np.asarray(-self.t.dot(self.R))
 
     def to_camera(self, points: npt.ArrayLike) -> Array:
         """Return world points (..., 3) in camera coordinates, in metres."""
@@ -86,7 +86,7 @@ class Camera:
         """Return the pixels (..., 2) of world points (..., 3), and their depths (...) along z in metres.
 
         A point that isn't in front of the camera (depth ≤ 0), or isn't finite, has no pixel: NaN.
-        Source: Hartley and Zisserman 2004, eq. 6.8.
+        Source: Hartley and Zisserman 2004, sec. 6.1.
         """
         (fx, skew, cx), (_, fy, cy), _ = self.K.tolist()
         with np.errstate(all="ignore"):
@@ -104,13 +104,13 @@ class Camera:
         return stack((u - cx - skew * y) / fx, y)
 
     def pixel_ray(self, pixels: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the origin (3,) and unit directions (..., 3), in the world, of the rays of pixels (..., 2)."""
+        """Return the origin (3,) and unit directions (..., 3) in the world of the rays of pixels (..., 2)."""
         x, y = components(self.normalized(pixels))
         directions = stack(x, y, 1.0 + 0.0 * x).dot(self.R)
         return self.center, directions / norm(directions)[..., None]
 
     def fov(self, width: float, height: float) -> tuple[float, float]:
-        """Return the horizontal and the vertical field of view in radians of an image of width × height pixels.
+        """Return the horizontal and the vertical field of view, in radians, of an image of a size in pixels.
 
         Between opposite edges of the true, off-centre frustum, in the camera's xz and yz planes. With integer
         pixel centres the edges are at −½ and width − ½.

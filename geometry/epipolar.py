@@ -33,7 +33,7 @@ def essential(left: Camera, right: Camera) -> Array:
     """
     between = baseline(left, right)
     t = right.R.dot(between / -math.hypot(*between.tolist()))
-    return skew(t).dot(right.R.dot(left.R.T))
+    return np.asarray(skew(t).dot(right.R.dot(left.R.T)))
 
 
 def fundamental(left: Camera, right: Camera) -> Array:
@@ -41,7 +41,7 @@ def fundamental(left: Camera, right: Camera) -> Array:
 
     Its entry of largest magnitude is positive: of several, the first by rows.
     Raises GeometryError at zero baseline.
-    Source: Hartley and Zisserman 2004, eq. 9.12.
+    Source: Hartley and Zisserman 2004, sec. 9.2.2.
     """
     return normalize(right.K_inverse.T @ essential(left, right) @ left.K_inverse)
 

@@ -5,7 +5,7 @@ Intrinsic "zyx" is R = Rz(first) Ry(second) Rx(third); extrinsic "zyx" is the re
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -36,27 +36,33 @@ def factors(angles: npt.ArrayLike, order: str, frame: str) -> tuple[Factor, Fact
     """Return the three turns in the order of multiplication: their product, left to right, is the rotation.
 
     angles (..., 3) in radians.
-    Raises GeometryError for an unknown order or frame, or an angle that isn't finite; in a batch it gives NaN.
+    Raises GeometryError for an unknown order or frame, or an angle that isn't finite: NaN in a batch.
     """
+    a, b, c = [
+        Factor(axis, angle, axis_rotation(axis, angle)) for axis, angle in _turns(angles, order, frame)
+    ]
+    return a, b, c
+
+
+def _turns(angles: npt.ArrayLike, order: str, frame: str) -> list[tuple[str, Any]]:
     as_choice("order", order, ORDERS)
     as_choice("frame", frame, FRAMES)
-    turns = zip(order, components(as_array("angles", angles, 3)), strict=True)
-    a, b, c = [Factor(axis, angle, axis_rotation(axis, angle)) for axis, angle in turns]
-    return (a, b, c) if frame == "intrinsic" else (c, b, a)
+    turns = list(zip(order, components(as_array("angles", angles, 3)), strict=True))
+    return turns if frame == "intrinsic" else turns[::-1]
 
 
 def euler_to_matrix(angles: npt.ArrayLike, order: str, frame: str) -> Array:
     """Return the rotation (..., 3, 3) of Euler angles (..., 3) in radians.
 
     Raises GeometryError as `factors` does.
-    Source: Diebel 2006, "Representing Attitude", sec. 5.
+    Source: Siciliano et al. 2009, "Robotics", sec. 2.4.
     """
-    a, b, c = factors(angles, order, frame)
-    return product(product(a.R, b.R), c.R)
+    a, b, c = [axis_rotation(axis, angle) for axis, angle in _turns(angles, order, frame)]
+    return product(product(a, b), c)
 
 
 def matrix_to_euler(R: npt.ArrayLike, order: str, frame: str) -> tuple[Array, Mask]:
-    """Return the Euler angles (..., 3) in radians of rotations (..., 3, 3), and a mask (...) of the locked ones.
+    """Return Euler angles (..., 3) in radians of rotations (..., 3, 3), and a mask (...) of those at lock.
 
     The angles rebuild R to 1e-12 at every distance from lock. The first and the third lie in [−π, π], the
     second in [−π/2, π/2] for Tait–Bryan orders and in [0, π] for proper ones. At lock only the sum or the

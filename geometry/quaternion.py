@@ -36,7 +36,7 @@ def from_axis_angle(axis: npt.ArrayLike, angle: float | Array) -> Array:
 
     q = (cos θ/2, sin θ/2 · n), so turning on by 2π gives −q. The axis has any length but zero.
     Raises GeometryError for a zero axis or an angle that isn't finite; in a batch they give NaN.
-    Source: Kuipers 1999, eq. 5.12.
+    Source: Siciliano et al. 2009, "Robotics", sec. 2.6.
     """
     x, y, z = components(unit(as_array("axis", axis, 3), "axis"))
     w, s = cos_sin(0.5 * as_angle("angle", angle))
@@ -89,7 +89,7 @@ def to_matrix(q: npt.ArrayLike) -> Array:
     """Return the rotation (..., 3, 3) of quaternions (..., 4).
 
     Raises GeometryError for a zero quaternion; in a batch it gives NaN.
-    Source: Diebel 2006, "Representing Attitude", eq. 125 (transposed: active here).
+    Source: Siciliano et al. 2009, "Robotics", sec. 2.6.
     """
     w, x, y, z = components(normalize(q))
     return stack_matrix(
@@ -102,7 +102,7 @@ def to_matrix(q: npt.ArrayLike) -> Array:
 def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
     """Return the Hamilton product p q of quaternions (..., 4): the rotation q followed by p.
 
-    Source: Kuipers 1999, eq. 5.3.
+    Source: Kuipers 1999, "Quaternions and Rotation Sequences", ch. 5.
     """
     pw, px, py, pz = components(as_array("p", p, 4))
     qw, qx, qy, qz = components(as_array("q", q, 4))
@@ -124,7 +124,7 @@ def rotate(q: npt.ArrayLike, points: npt.ArrayLike) -> Array:
 
     Multiplied out it is p + w t + v × t with t = 2 v × p, where v is the vector part of q.
     Raises GeometryError for a zero quaternion; in a batch it gives NaN.
-    Source: Kuipers 1999, eq. 5.9.
+    Source: Kuipers 1999, "Quaternions and Rotation Sequences", ch. 5.
     """
     w, x, y, z = components(normalize(q))
     px, py, pz = components(as_array("points", points, 3))

@@ -19,7 +19,7 @@ def axis_rotation(axis: str, angle: float | Array) -> Array:
 
     axis is "x", "y" or "z"; angle (...) in radians, right-handed. Result (..., 3, 3).
     Raises GeometryError for another axis or an angle that isn't finite; such an angle in a batch gives NaN.
-    Source: Diebel 2006, "Representing Attitude", eqs. 30-32 (transposed: active here).
+    Source: Siciliano et al. 2009, "Robotics", sec. 2.2.1.
     """
     if axis not in _NEXT:
         raise GeometryError("axis", axis, ", ".join(AXES))
@@ -36,10 +36,9 @@ def axis_rotation(axis: str, angle: float | Array) -> Array:
 
 def skew(vector: npt.ArrayLike) -> Array:
     """Return the matrix (..., 3, 3) of the cross product with (..., 3): ``skew(a) @ b`` is a × b."""
-    v = as_array("vector", vector, 3)
-    S = np.zeros((*v.shape, 3))
-    S[..., 2, 1], S[..., 0, 2], S[..., 1, 0] = (v[..., i] for i in range(3))
-    return S - S.swapaxes(-1, -2)
+    x, y, z = components(as_array("vector", vector, 3))
+    zero = 0.0 * x
+    return stack_matrix(zero, -z, y, z, zero, -x, -y, x, zero)
 
 
 def unit(vector: npt.ArrayLike, argument: str = "vector") -> Array:
@@ -144,7 +143,7 @@ def nearest_rotation(M: npt.ArrayLike) -> Array:
     """Return the rotation nearest to one matrix (3, 3) in the Frobenius norm.
 
     Raises GeometryError where several are equally near: the two smaller singular values cancel.
-    Source: Higham 1989, "Matrix nearness problems", with the sign of Umeyama 1991, eq. 43.
+    Source: Higham 1989, "Matrix nearness problems and applications"; the sign as in Umeyama 1991.
     """
     matrix = as_finite_array("M", M, 3, 3)
     U, sigma, Vt = np.linalg.svd(matrix)

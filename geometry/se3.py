@@ -43,7 +43,7 @@ def compose(T_a_b: npt.ArrayLike, *others: npt.ArrayLike) -> Array:
 def inverse(T_a_b: npt.ArrayLike) -> Array:
     """Return T_b_a (..., 4, 4), by the transpose: (Rᵀ, −Rᵀt).
 
-    Source: Murray, Li and Sastry 1994, eq. 2.24.
+    Source: Murray, Li and Sastry 1994, sec. 2.3.
     """
     T = as_array("T_a_b", T_a_b, 4, 4)
     Rt = T[..., :3, :3].swapaxes(-1, -2)

@@ -1,19 +1,20 @@
-"""The least correction of a pair of pixels by the polynomial of Hartley and Sturm, whose roots are all minima."""
+"""The least correction of a pair of pixels by the polynomial of Hartley and Sturm."""
 
 import numpy as np
-from numpy.polynomial.polynomial import polymul, polyroots, polysub
 
 from ..arrays import Array
 
 
 def least_correction(F: Array, pair: Array) -> Array:
-    """Return the shortest (Δleft, Δright), (4,), with (right + Δright)^T F (left + Δleft) = 0, for a pair (4,).
+    """Return the shortest move (4,) of a pair (4,) of points, left and right, to right^T F left = 0.
 
-    F (3, 3) has rank 2, and the points of the pair are neither its epipoles nor badly scaled.
+    F (3, 3) has rank 2, and its epipoles and the points are of the order of one.
     Source: Hartley and Sturm 1997, "Triangulation", sec. 4.2; Hartley and Zisserman 2004, algorithm 12.1.
     """
     centred = _shift(pair[2:]).T @ F @ _shift(pair[:2])
     U, _, Vt = np.linalg.svd(centred)
+    if not (Vt[2, :2].any() and U[:2, 2].any()):
+        return np.zeros(4)  # every line passes through an epipole
     (turn_left, f), (turn_right, g) = _epipole_on_x(Vt[2]), _epipole_on_x(U[:, 2])
     (a, b), (c, d) = (turn_right @ centred @ turn_left.T)[1:, 1:].tolist()
     t, s = _stationary(a, b, c, d, f, g)
@@ -26,12 +27,12 @@ def least_correction(F: Array, pair: Array) -> Array:
 
 
 def _stationary(a: float, b: float, c: float, d: float, f: float, g: float) -> tuple[Array, Array]:
-    """Return the pencil's lines t : s at which the distance may be least: the real parts of all roots, and t : 0."""
-    p, q = [b, a], [d, c]
-    left, right = np.array([1.0, 0.0, f**2]), polymul(p, p) + g**2 * polymul(q, q)
-    rise = polymul([0.0, 1.0], polymul(right, right))
-    fall = (a * d - b * c) * polymul(polymul(left, left), polymul(p, q))
-    roots = polyroots(polysub(rise, fall)).real
+    """Return the lines t : s of the pencil at which the distance may be least: all roots, and 1 : 0."""
+    p, q, left = [a, b], [c, d], [f**2, 0.0, 1.0]
+    right = np.convolve(p, p) + g**2 * np.convolve(q, q)
+    rise = np.convolve([0.0, 1.0, 0.0], np.convolve(right, right))
+    fall = (a * d - b * c) * np.convolve(np.convolve(left, left), np.convolve(p, q))
+    roots = np.roots(rise - fall).real
     return np.append(roots, 1.0), np.append(np.ones_like(roots), 0.0)
 
 

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Components, components, cross, dot, ratio, stack
+from ..arrays import Array, Components, components, cross, dot, ratio, square_root, stack
 from ..camera import Camera
 from ..epipolar import baseline
+from .rays import advance, direction, nearest_depth, parallax
 from .result import Triangulation, conclude, pixel_pairs
 
 
@@ -30,43 +31,25 @@ def triangulate_midpoint(
 
     Quick, and good for a wide baseline; it degrades near the epipoles and isn't projectively invariant.
     Raises GeometryError at zero baseline.
-    Source: Hartley and Sturm 1997, "Triangulation", sec. 5.3.
+    Source: Hartley and Sturm 1997, "Triangulation".
     """
-    between = baseline(left, right)
+    between = baseline(left, right).tolist()
     pairs, defined = pixel_pairs(uv_left, uv_right)
     with np.errstate(all="ignore"):
-        on_left, on_right, gap, ahead = nearest_points(left, right, between, components(pairs))
+        ul, vl, ur, vr = components(pairs)
+        a, b = direction(left, ul, vl), direction(right, ur, vr)
+        depth_left, depth_right = nearest_depth(between, a, b), -nearest_depth(between, b, a)
+        on_left, on_right = advance(left, depth_left, a), advance(right, depth_right, b)
         middle = [0.5 * (x + y) for x, y in zip(on_left, on_right, strict=True)]
-        fields = conclude((left, right), between, middle, ahead, defined)
-        both = stack(*on_left, *on_right).reshape(*defined.shape, 2, 3)
-    return Midpoint(*fields, np.where(defined, gap, np.nan), np.where(defined[..., None, None], both, np.nan))
+        ahead = (depth_left > 0.0) & (depth_right > 0.0)
+        fields = conclude((left, right), middle, parallax(a, b), ahead, defined)
+        gap = np.where(defined, _gap(between, a, b), np.nan)
+        closest = stack(*on_left, *on_right).reshape(*defined.shape, 2, 3)
+    return Midpoint(*fields, gap, np.where(defined[..., None, None], closest, np.nan))
 
 
-def nearest_points(
-    left: Camera, right: Camera, between: Array, pair: Components
-) -> tuple[Any, Any, Any, Any]:
-    """Return the nearest points of two lines of sight (components), their gap, and whether both are ahead."""
-    base = between.tolist()
-    toward_left, toward_right = _direction(left, *pair[:2]), _direction(right, *pair[2:])
-    normal = cross(toward_left, toward_right)
-    squared = dot(normal, normal)
-    along_left = ratio(dot(cross(base, toward_right), normal), squared)
-    along_right = ratio(dot(cross(base, toward_left), normal), squared)
-    on_left = [c + along_left * d for c, d in zip(left.center.tolist(), toward_left, strict=True)]
-    on_right = [c + along_right * d for c, d in zip(right.center.tolist(), toward_right, strict=True)]
-    return (
-        on_left,
-        on_right,
-        _gap(base, toward_left, normal, squared),
-        (along_left > 0.0) & (along_right > 0.0),
-    )
-
-
-def _direction(camera: Camera, u: Any, v: Any) -> list[Any]:
-    return [a * u + b * v + c for a, b, c in camera.back_projection.tolist()]
-
-
-def _gap(base: Components, toward: Components, normal: Components, squared: Any) -> Any:
-    apart = cross(base, toward)
-    parallel = (dot(apart, apart) / dot(toward, toward)) ** 0.5
-    return np.where(squared > 0.0, ratio(abs(dot(base, normal)), squared**0.5), parallel)
+def _gap(between: Components, a: Components, b: Components) -> Any:
+    normal, apart = cross(a, b), cross(between, a)
+    skew = ratio(abs(dot(between, normal)), square_root(dot(normal, normal)))
+    parallel = square_root(dot(apart, apart) / dot(a, a))
+    return np.where(np.isnan(skew), parallel, skew)

@@ -3,11 +3,11 @@
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Mask, components
+from ..arrays import Array, Components, Mask, components, everywhere, square_root, stack
 from ..camera import Camera
 from ..epipolar import baseline, essential
 from .hartley_sturm import least_correction
-from .midpoint import nearest_points
+from .rays import advance, direction, nearest_depth, parallax
 from .result import Triangulation, conclude, pixel_pairs
 
 _ITERATIONS = 20
@@ -24,12 +24,13 @@ def triangulate_optimal(
     Raises GeometryError at zero baseline.
     Source: `correct_matches`; the corrected rays meet, and their point is found in closed form.
     """
-    between = baseline(left, right)
+    between = baseline(left, right).tolist()
     pairs, defined = pixel_pairs(*correct_matches(left, right, uv_left, uv_right))
     with np.errstate(all="ignore"):
-        on_left, on_right, _, ahead = nearest_points(left, right, between, components(pairs))
-        middle = [0.5 * (x + y) for x, y in zip(on_left, on_right, strict=True)]
-        return Triangulation(*conclude((left, right), between, middle, ahead, defined))
+        ul, vl, ur, vr = components(pairs)
+        a, b = direction(left, ul, vl), direction(right, ur, vr)
+        point = advance(left, nearest_depth(between, a, b), a)
+        return Triangulation(*conclude((left, right), point, parallax(a, b), True, defined))
 
 
 def correct_matches(
@@ -38,8 +39,8 @@ def correct_matches(
     """Return the nearest pixels (..., 2), left and right, whose rays meet: least |Δleft|² + |Δright|².
 
     NaN for pairs that aren't defined. Raises GeometryError at zero baseline.
-    Source: Lindström 2010, "Triangulation made easy", iterated until it settles, which was at the least of all
-    minima wherever it was compared; where it doesn't (near the epipoles), Hartley and Sturm 1997, "Triangulation".
+    Source: Lindström 2010, "Triangulation made easy", iterated until it settles: at the least of all minima
+    wherever the tests compare. Near the epipoles it may not; there, Hartley and Sturm 1997, "Triangulation".
     """
     pairs, defined = pixel_pairs(uv_left, uv_right)
     # One scale for both images keeps the least correction what it is, and the numbers near one.
@@ -47,7 +48,7 @@ def correct_matches(
     x = (pairs - np.concatenate([left.K[:2, 2], right.K[:2, 2]])) / scale
     F = _unscaled(right, scale).T @ essential(left, right) @ _unscaled(left, scale)
     with np.errstate(all="ignore"):
-        move, settled = _lindstrom(F, x)
+        move, settled = _lindstrom(F, components(x))
     for index in map(tuple, np.argwhere(~settled)):
         move[index] = least_correction(F, x[index])
     corrected = pairs + np.where(defined[..., None], scale * move, np.nan)
@@ -59,22 +60,23 @@ def _unscaled(camera: Camera, scale: float) -> Array:
     return np.array([[scale / fx, -skew * scale / (fx * fy), 0.0], [0.0, scale / fy, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _lindstrom(F: Array, x: Array) -> tuple[Array, Mask]:
-    """Return the move (..., 4) from x = (left, right) to the quadric right^T F left = 0, and where it settled."""
-    B = np.zeros((4, 4))
-    B[:2, 2:], B[2:, :2] = F[:2, :2].T, F[:2, :2]
-    linear = np.concatenate([F[2, :2], F[:2, 2]])
-    gradient = x @ B + linear
-    residual = 0.5 * np.vecdot(x, gradient + linear) + F[2, 2]
-    move, normal = np.zeros_like(x), gradient
+def _lindstrom(F: Array, pair: Components) -> tuple[Array, Mask]:
+    """Return the move (..., 4) of a pair to the quadric right^T F left = 0, and where it settled."""
+    (a, b, c), (d, e, f), (g, h, i) = F.tolist()
+    ul, vl, ur, vr = pair
+    gradient = a * ur + d * vr + g, b * ur + e * vr + h, a * ul + b * vl + c, d * ul + e * vl + f
+    residual = ur * gradient[2] + vr * gradient[3] + g * ul + h * vl + i
+    normal = gradient
     for _ in range(_ITERATIONS):
-        # Along the normal, residual − 2 half step + curve step² = 0 on the quadric.
-        bend = normal @ B
-        half, curve = 0.5 * np.vecdot(normal, gradient), 0.5 * np.vecdot(normal, bend)
-        step = residual / (half + np.sqrt(half * half - curve * residual) + _TINY)
-        previous, move = move, -step[..., None] * normal
-        normal = gradient - step[..., None] * bend
-        settled = np.abs(move - previous).max(axis=-1) <= _SETTLED
-        if settled.all():
+        nul, nvl, nur, nvr = normal
+        bend = a * nur + d * nvr, b * nur + e * nvr, a * nul + b * nvl, d * nul + e * nvl
+        # Along the normal, the quadric is at residual − 2 half step + curve step² = 0.
+        half = 0.5 * sum(n * t for n, t in zip(normal, gradient, strict=True))
+        curve = nur * bend[2] + nvr * bend[3]
+        step = residual / (half + square_root(half * half - curve * residual) + _TINY)
+        previous, normal = normal, tuple(t - step * w for t, w in zip(gradient, bend, strict=True))
+        turned = sum(abs(new - old) for new, old in zip(normal, previous, strict=True))
+        settled = abs(step) * turned <= _SETTLED
+        if everywhere(settled):
             break
-    return move, settled
+    return stack(*(-step * n for n in previous)), np.asarray(settled)

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Components, Mask, cross, dot, norm, stack
+from ..arrays import Array, Components, Mask, dot, norm, stack
 from ..camera import Camera
 from ..errors import as_array
 
@@ -23,11 +24,14 @@ class Status(IntEnum):
     UNDEFINED = 3  # a pixel isn't finite, or is beyond 1e9
 
 
+_FOUND, _PARALLEL, _BEHIND, _UNDEFINED = map(int, Status)
+
+
 @dataclass(frozen=True, eq=False)
 class Triangulation:
     """The `point` (..., 3) in metres in the world, NaN where there is none; the `status` (...) says why.
 
-    `parallax` (...) is the angle in radians at which the lines of sight meet: the smaller, the less sure the depth.
+    `parallax` (...) is the angle between the lines of sight in radians: the smaller, the less sure the depth.
     """
 
     point: Array
@@ -46,7 +50,7 @@ class Triangulation:
 
 
 def pixel_pairs(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> tuple[Array, Mask]:
-    """Return pairs of pixels as (..., 4), and a mask (...) of the defined ones; the others are set to zero."""
+    """Return pairs of pixels as (..., 4), and a mask (...) of the defined ones; the others become zero."""
     left, right = as_array("uv_left", uv_left, 2), as_array("uv_right", uv_right, 2)
     if left.shape != right.shape:
         left, right = np.broadcast_arrays(left, right)
@@ -56,36 +60,27 @@ def pixel_pairs(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> tuple[Array,
 
 
 def conclude(
-    cameras: tuple[Camera, Camera], between: Array, point: Components, ahead: Mask | bool, defined: Mask
+    cameras: tuple[Camera, Camera], point: Components, parallax: Any, ahead: Any, defined: Mask
 ) -> tuple[Array, npt.NDArray[np.int_], Array]:
-    """Return the fields of a Triangulation from a point's components, not finite where the rays are parallel.
+    """Return the fields of a Triangulation from a point's components and the parallax of its lines of sight.
 
-    `between` (3,) is the baseline, `ahead` (...) what the method itself knows of being in front.
+    `ahead` is whether the method found it ahead on both rays; its depths are checked here in any case.
     """
-    sight = [x - c for x, c in zip(point, cameras[0].center.tolist(), strict=True)]
-    base = between.tolist()
-    # Crossed with the baseline: crossed with the other line of sight, a distant point would lose its parallax.
-    sine, cosine = dot(*(2 * (cross(sight, base),))) ** 0.5, dot(sight, sight) - dot(sight, base)
-    parallax = np.arctan2(sine, cosine)
-    finite = np.isfinite(point[0] + point[1] + point[2]) & (parallax > PARALLEL)
     for camera in cameras:
-        ahead = ahead & (dot(camera.R[2].tolist(), point) + float(camera.t[2]) > 0.0)
-    status = np.where(finite, np.where(ahead, Status.FOUND, Status.BEHIND), Status.PARALLEL)
-    status = np.where(defined, status, Status.UNDEFINED)
-    found = (status == Status.FOUND)[..., None]
-    return (
-        np.where(found, stack(*point), np.nan),
-        status,
-        np.where(defined, np.where(finite, parallax, 0.0), np.nan),
-    )
+        ahead = ahead & (dot(camera.R[2].tolist(), point) + camera.t.item(2) > 0.0)
+    finite = np.isfinite(point[0] + point[1] + point[2]) & (parallax > PARALLEL)
+    found = finite & ahead & defined
+    status = np.where(defined, np.where(finite, np.where(ahead, _FOUND, _BEHIND), _PARALLEL), _UNDEFINED)
+    parallax = np.where(defined, np.where(finite, parallax, 0.0), np.nan)
+    return np.where(found[..., None], stack(*point), np.nan), status, parallax
 
 
 def reprojection_errors(
     left: Camera, right: Camera, point: npt.ArrayLike, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike
 ) -> Array:
-    """Return the distances (..., 2) in pixels, left and right, from points (..., 3) to their measured pixels (..., 2).
+    """Return the distances (..., 2) in pixels of points (..., 3) from pixels (..., 2), left and right.
 
-    NaN where a point has no pixel.
+    Between the measured pixel and the one to which the point projects; NaN where it has none.
     """
     measured = ((left, as_array("uv_left", uv_left, 2)), (right, as_array("uv_right", uv_right, 2)))
     return stack(*(norm(camera.project(point)[0] - pixels) for camera, pixels in measured))

@@ -8,12 +8,12 @@ from ..errors import as_array, as_number
 
 
 def disparity(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Array:
-    """Return u_left − u_right (...) in pixels of pixels (..., 2): positive for points in front of a parallel rig."""
+    """Return u_left − u_right (...) of pixels (..., 2): above 0 for points in front of a parallel rig."""
     return np.asarray(as_array("uv_left", uv_left, 2)[..., 0] - as_array("uv_right", uv_right, 2)[..., 0])
 
 
 def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float) -> Array:
-    """Return the depth Z = f b / d (...) in metres of a disparity (...) in pixels; NaN where it isn't positive.
+    """Return the depth Z = f b / d (...) in metres of a disparity (...) in pixels, NaN unless above 0.
 
     baseline in metres, focal in pixels, both above 0: GeometryError otherwise.
     Source: Szeliski 2022, "Computer Vision", eq. 12.1.
@@ -27,9 +27,9 @@ def depth_sigma(depth: npt.ArrayLike, baseline: float, focal: float, sigma: floa
     """Return the standard deviation (...) in metres of the depth (...) of a point seen by a parallel rig.
 
     √2 σ Z² / (f b), for independent noise of sigma pixels in each coordinate of both pixels: exactly the depth
-    entry of `covariance`, wherever the point is, since the two v only tell its height.
-    NaN where the depth isn't positive. Raises GeometryError unless baseline, focal and sigma are above 0.
-    Source: Hartley and Zisserman 2004, sec. 5.2.3, applied to Z = f b / d with σ_d = √2 σ.
+    entry of `covariance`, wherever the point is, since the two v tell no more than its height.
+    NaN unless the depth is above 0. Raises GeometryError unless baseline, focal and sigma are above 0.
+    Source: Hartley and Zisserman 2004, sec. 5.2.1, applied to Z = f b / d with σ_d = √2 σ.
     """
     Z = as_array("depth", depth)
     scale = as_number("focal", focal, above=0.0) * as_number("baseline", baseline, above=0.0)

@@ -1,11 +1,11 @@
-"""How sure a triangulated point is: by first-order propagation of pixel noise, and by drawing noisy samples."""
+"""How sure a triangulated point is: by propagation of pixel noise to first order, and by noisy samples."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, components, stack
+from ..arrays import Array, components, if_positive, stack
 from ..camera import Camera
 from ..errors import GeometryError, as_array, as_number
 from .optimal import triangulate_optimal
@@ -17,50 +17,48 @@ def projection_jacobian(camera: Camera, points: npt.ArrayLike) -> Array:
     """Return the derivatives (..., 2, 3) of the pixel by the world point (..., 3), in pixels per metre.
 
     NaN where the point isn't in front of the camera.
-    Source: Hartley and Zisserman 2004, sec. A6.3, for the pinhole camera.
+    Source: Hartley and Zisserman 2004, sec. 6.1, differentiated.
     """
     x, y, z = components(camera.to_camera(points))
-    z = np.where(np.asarray(z) > 0.0, z, np.nan)
     (fx, skew, _), (_, fy, _), _ = camera.K.tolist()
-    u_row = stack(fx / z, skew / z, -(fx * x + skew * y) / z**2)
-    v_row = stack(0.0 * z, fy / z, -fy * y / z**2)
-    return np.stack([u_row, v_row], axis=-2) @ camera.R
+    w = 1.0 / if_positive(z)
+    rows = stack(fx * w, skew * w, -(fx * x + skew * y) * w * w, 0.0 * w, fy * w, -fy * y * w * w)
+    return rows.reshape(*rows.shape[:-1], 2, 3) @ camera.R
 
 
 def covariance(cameras: Sequence[Camera], point: npt.ArrayLike, sigma_px: float) -> Array:
-    """Return the covariance (..., 3, 3) in m² of points (..., 3) seen by the cameras: (Jᵀ Σ⁻¹ J)⁻¹, Σ = σ² I.
+    """Return the covariance (..., 3, 3) in m² of points (..., 3) seen by cameras: (Jᵀ Σ⁻¹ J)⁻¹ with Σ = σ² I.
 
     For the best estimator, and independent noise of sigma_px pixels in each coordinate of each pixel.
-    NaN where a point isn't in front of all cameras, or they don't determine it (zero baseline, parallel rays).
-    Raises GeometryError without cameras, or unless sigma_px is above 0.
-    Source: Hartley and Zisserman 2004, result 5.10.
+    NaN where a point isn't in front of all cameras, or isn't fixed by them (zero baseline, parallel rays).
+    Raises GeometryError for fewer than two cameras, or unless sigma_px is above 0.
+    Source: Hartley and Zisserman 2004, sec. 5.2.2.
     """
     sigma = as_number("sigma_px", sigma_px, above=0.0)
-    if not cameras:
-        raise GeometryError("cameras", cameras, "one camera or more")
+    if len(cameras) < 2:
+        raise GeometryError("cameras", cameras, "two cameras or more")
     points = as_array("point", point, 3)
     J = np.concatenate([projection_jacobian(camera, points) for camera in cameras], axis=-2)
-    known = np.isfinite(J).all(axis=(-2, -1))[..., None, None]
-    _, singular, Vt = np.linalg.svd(
-        np.where(known, J, 0.0), full_matrices=False
-    )  # JᵀJ would square the conditioning
-    known = known & (singular[..., -1:, None] > _SINGULAR * singular[..., :1, None])
-    half = Vt * (sigma / np.where(known[..., 0], singular, np.nan))[..., None]
+    known = np.isfinite(J.sum(axis=(-2, -1), keepdims=True))[..., 0]
+    # By the singular values of J: to invert JᵀJ would square its conditioning.
+    _, singular, Vt = np.linalg.svd(np.where(known[..., None], J, 0.0), full_matrices=False)
+    fixed = known & (singular[..., 2:] > _SINGULAR * singular[..., :1])
+    half = Vt * (sigma / np.where(fixed, singular, np.nan))[..., None]
     return np.asarray(half.swapaxes(-1, -2) @ half)
 
 
 def ellipsoid_axes(covariance: npt.ArrayLike) -> tuple[Array, Array]:
-    """Return the 1σ lengths (..., 3), longest first, and the directions (..., 3, 3) of covariances (..., 3, 3).
+    """Return the 1σ lengths (..., 3), longest first, and directions (..., 3, 3) of covariances (..., 3, 3).
 
-    The columns of the directions are unit vectors of a right-handed frame. NaN where the covariance isn't finite.
-    Source: Hartley and Zisserman 2004, sec. A6.4.
+    The columns of the directions are unit vectors of a right-handed frame. NaN for a covariance that is NaN.
+    Source: Golub and Van Loan 2013, "Matrix Computations", sec. 8.1.
     """
     C = as_array("covariance", covariance, 3, 3)
-    known = np.isfinite(C).all(axis=(-2, -1))[..., None]
+    known = np.isfinite(C.sum(axis=(-2, -1), keepdims=True))[..., 0]
     variances, axes = np.linalg.eigh(np.where(known[..., None], C, 0.0))
-    axes = axes[..., ::-1] * np.sign(np.linalg.det(axes[..., ::-1]))[..., None, None]
+    longest_first = axes[..., ::-1] * np.where(np.linalg.det(axes) < 0.0, 1.0, -1.0)[..., None, None]
     lengths = np.sqrt(np.maximum(variances[..., ::-1], 0.0))
-    return np.where(known, lengths, np.nan), np.where(known[..., None], axes, np.nan)
+    return np.where(known, lengths, np.nan), np.where(known[..., None], longest_first, np.nan)
 
 
 def pixel_noise(count: int, seed: int) -> Array:
@@ -80,7 +78,7 @@ def monte_carlo(
     count: int,
     seed: int,
 ) -> Array:
-    """Return `count` points (count, 3) by the optimal method from one pair of pixels (2,) with seeded Gaussian noise.
+    """Return points (count, 3) by the optimal method from a pair of pixels (2,) with seeded Gaussian noise.
 
     NaN where a sample has no point. Raises GeometryError at zero baseline, or for a sigma below 0.
     """

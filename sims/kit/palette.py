@@ -25,14 +25,23 @@ def before_tone_mapping(text: str, *, linear: bool = False) -> RGB:
     """
     shown = np.array(rgb(text)) / 255.0
     light = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
-    y = np.clip(np.linalg.solve(_FROM_FILM, light), 0.0, 0.999)
-    a, b, c = 1.0 - 0.983729 * y, 0.0245786 - 0.4329510 * y, -0.000090537 - 0.238081 * y
-    film = (-b + np.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)
-    sent = np.clip(0.6 * np.linalg.solve(_TO_FILM, film), 0.0, 1.0)
+    for dimmed in np.linspace(1.0, 0.5, 101):  # the curve can't show the brightest colours: keep the hue
+        sent = _before_film(dimmed * light)
+        if np.all(sent <= 1.0):
+            break
+    sent = np.clip(sent, 0.0, 1.0)
     if not linear:
         sent = np.where(sent <= 0.0031308, 12.92 * sent, 1.055 * sent ** (1 / 2.4) - 0.055)
     red, green, blue = np.rint(255.0 * sent).astype(int).tolist()
     return red, green, blue
+
+
+def _before_film(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    y = np.clip(np.linalg.solve(_FROM_FILM, light), 0.0, 1.0)
+    a, b, c = 1.0 - 0.983729 * y, 0.0245786 - 0.4329510 * y, -0.000090537 - 0.238081 * y
+    film = (-b + np.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)
+    sent: npt.NDArray[np.float64] = 0.6 * np.linalg.solve(_TO_FILM, film)
+    return sent
 
 
 _TO_FILM: npt.NDArray[np.float64] = np.array(

@@ -29,7 +29,11 @@ class Params(BaseModel):
 
     def label(self, name: str) -> str:
         """Words beside the control of a field in this state."""
-        return title(type(self).model_fields[name])
+        return _declared_title(type(self), name)
+
+    def regions(self) -> dict[str, list[tuple[float, float]]]:
+        """Spans of a slider's values that deserve a mark on its track in this state."""
+        return {}
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """The state with some fields replaced, validated; raises pydantic's ValidationError."""
@@ -168,6 +172,11 @@ def title(field: FieldInfo) -> str:
 @lru_cache(maxsize=1024)
 def _declared_bounds(model: type[Params], name: str) -> tuple[float, float]:
     return field_bounds(model.model_fields[name])
+
+
+@lru_cache(maxsize=1024)
+def _declared_title(model: type[Params], name: str) -> str:
+    return title(model.model_fields[name])
 
 
 def field_bounds(field: FieldInfo) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 from typing import Any
 
@@ -16,9 +17,9 @@ THIN = "\u2009"
 def figure(value: float, digits: int = 3) -> str:
     """A number for people: fixed decimals, a true minus sign, no negative zero."""
     text = f"{value:.{digits}f}"
-    if text[0] == "-":
-        return MINUS + text[1:] if text.strip("-0.") else text[1:]
-    return text
+    if text[0] != "-":
+        return text
+    return MINUS + text[1:] if text.strip("-0.") else text[1:]
 
 
 def quantity(value: float, unit: str = "", digits: int = 3) -> str:
@@ -34,11 +35,17 @@ def _number(value: float, digits: int) -> str:
 def mathml(value: Any, digits: int = 3) -> str:
     """A number, vector (as a column) or matrix in MathML."""
     array = np.asarray(value, dtype=float)
-    if array.ndim == 0:
-        return _number(float(array), digits)
-    rows = array.tolist() if array.ndim == 2 else [[v] for v in array.tolist()]
-    body = "".join("<mtr>" + "".join(f"<mtd>{_number(v, digits)}</mtd>" for v in row) + "</mtr>" for row in rows)
-    return f"<mrow><mo>[</mo><mtable>{body}</mtable><mo>]</mo></mrow>"
+    return _layout(array.shape) % tuple([figure(v, digits) for v in array.ravel().tolist()])
+
+
+@lru_cache(maxsize=32)
+def _layout(shape: tuple[int, ...]) -> str:
+    """MathML with a place for each figure of a number (), column (n,) or matrix (n, m)."""
+    if not shape:
+        return "<mn>%s</mn>"
+    rows, columns = (*shape, 1)[:2]
+    body = ("<mtr>" + "<mtd><mn>%s</mn></mtd>" * columns + "</mtr>") * rows
+    return f'<mtable class="s3-matrix">{body}</mtable>'
 
 
 def row(values: Sequence[float], digits: int = 3) -> str:

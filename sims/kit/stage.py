@@ -6,6 +6,7 @@ constant size on the screen.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +17,7 @@ import trimesh
 import viser
 
 from sims.kit.palette import AXES, Palette
-from sims.kit.viser_internals import set_pose
+from sims.kit.viser_internals import set_pose, set_property, set_visible
 
 Vector = Sequence[float] | npt.NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
@@ -46,7 +47,7 @@ class Node:
         )
 
     def show(self, visible: bool) -> None:
-        self.handle.visible = visible
+        set_visible(self.handle, visible)
 
 
 class Lines(Node):
@@ -54,43 +55,66 @@ class Lines(Node):
 
     def __init__(self, handle: Any, rgb: tuple[int, int, int], dash: tuple[float, float] | None) -> None:
         super().__init__(handle)
-        self._rgb = rgb
+        self._rgb = np.array(rgb, np.uint8)
         self._dash = dash
+        self._count = len(handle.points)
+        self._arc: tuple[float, float, float] | None = None
 
     def path(self, points: npt.ArrayLike) -> None:
         """Draw a polyline through points of shape (n, 3)."""
         self.pieces(dashes(np.asarray(points, dtype=float), self._dash))
 
-    def pieces(self, pieces: npt.NDArray[np.float64]) -> None:
+    def pieces(self, pieces: npt.NDArray[Any]) -> None:
         """Draw pieces of shape (n, 2, 3)."""
-        shape = self.handle.points.shape
-        if pieces.shape != shape:
-            self.handle.colors = np.broadcast_to(np.array(self._rgb, np.uint8), pieces.shape)
-        self.handle.points = pieces
+        if len(pieces) != self._count:
+            self._count = len(pieces)
+            set_property(self.handle, "colors", np.broadcast_to(self._rgb, pieces.shape).copy())
+        set_property(self.handle, "points", pieces.astype(np.float32))
 
     def arc(self, radius: float, angle: float, start: float = 0.0) -> None:
         """Draw a circular arc in the node's own xy plane, counter-clockwise from its x axis (radians)."""
-        self.path(arc_points(radius, angle, start))
+        if self._arc != (radius, angle, start):
+            self._arc = radius, angle, start
+            self.pieces(arc_pieces(radius, angle, start, self._dash))
 
 
 class Label(Node):
     """Words at a place; constant size on the screen."""
 
+    _shown = ""
+
     def text(self, text: str) -> None:
-        self.handle.text = text
+        if text != self._shown:
+            self._shown = text
+            set_property(self.handle, "text", text)
 
 
 class Arrow(Node):
     """An arrow whose ends move."""
 
     def between(self, tail: Vector, tip: Vector) -> None:
-        self.handle.points = np.array([[tail, tip]], dtype=np.float32)
+        set_property(self.handle, "points", np.array([[tail, tip]], dtype=np.float32))
 
 
-def arc_points(radius: float, angle: float, start: float = 0.0) -> npt.NDArray[np.float64]:
-    """Points (n, 3) along an arc in the xy plane; n is fixed so that updates keep their size."""
-    turn = np.linspace(start, start + angle, 49)
-    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros_like(turn)])
+ARC_PIECES = 48
+
+
+def arc_pieces(
+    radius: float, angle: float, start: float, dash: tuple[float, float] | None
+) -> npt.NDArray[np.float64]:
+    """An arc in the xy plane as pieces (n, 2, 3); dashes (metres along it) keep their length."""
+    length = abs(angle) * radius
+    count = ARC_PIECES if dash is None else max(int(length / sum(dash)) + 1, 1)
+    step = angle / count if dash is None else math.copysign(sum(dash) / radius, angle)
+    ends = np.empty((count, 2))
+    ends[:, 0] = start + step * np.arange(count)
+    ends[:, 1] = ends[:, 0] + (step if dash is None else math.copysign(dash[0] / radius, angle))
+    if dash is not None:
+        np.clip(ends, min(start, start + angle), max(start, start + angle), out=ends)
+    pieces = np.zeros((count, 2, 3))
+    pieces[..., 0] = radius * np.cos(ends)
+    pieces[..., 1] = radius * np.sin(ends)
+    return pieces
 
 
 def dashes(points: npt.NDArray[np.float64], dash: tuple[float, float] | None) -> npt.NDArray[np.float64]:
@@ -124,14 +148,16 @@ class Stage:
             cell_color=grey, section_color=section, cell_thickness=0.6, section_thickness=0.9,
             position=(0.0, 0.0, height), shadow_opacity=0.0,
         )  # fmt: skip
-        self.scene.configure_default_lights(cast_shadow=False)
+        self.scene.configure_default_lights(enabled=False)
+        self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=0.5)
+        self.scene.add_light_directional("/sun", intensity=1.1, position=(2.0, -3.0, 6.0))
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""
         return Node(self.scene.add_frame(name, show_axes=False))
 
     def axes(
-        self, name: str, length: float, *, radius: float = 0.012, letters: Sequence[str] | None = AXES,
+        self, name: str, length: float, *, radius: float = 0.012, letters: Sequence[str] | None = ("X", "Y", "Z"),
         ghost: bool = False,
     ) -> Node:  # fmt: skip
         """A coordinate frame: three arrows in axis colours with letters at their tips.
@@ -152,7 +178,7 @@ class Stage:
                 head_length=7 * radius,
             )  # fmt: skip
         for axis, word, tip in zip(AXES, letters or (), unit, strict=False):
-            self.label(f"{name}/letter_{axis}", word.upper() if len(word) == 1 else word, tip * 1.08)
+            self.label(f"{name}/letter_{axis}", word, tip * 1.08)
         return frame
 
     def lines(

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from html import escape
 from typing import Any, Protocol
 
 import viser
@@ -13,7 +16,7 @@ from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params, choices, extra, field_bounds
 from sims.kit.sim import Sim
 from sims.kit.stage import Dragged, Stage
-from sims.kit.viser_internals import set_value
+from sims.kit.viser_internals import set_property, set_value
 
 ACCENT = (11, 95, 215)
 
@@ -40,21 +43,21 @@ class Look:
 
 @dataclass
 class Control:
-    """A viser control of one field, with the way from its value to the parameter's and back."""
+    """A viser control of one field, with the way from the parameter's value to the control's."""
 
     name: str
     handle: Any
     to_control: Callable[[Any], Any]
-    bounded: bool
+    label: str
+    bounds: tuple[float, float] | None = None
+    """Least and greatest value, for the controls whose bounds may change."""
 
     def draw(self, params: Params) -> None:
-        if self.bounded:
-            low, high = params.bounds(self.name)
-            if (self.handle.min, self.handle.max) != (low, high):
-                self.handle.min, self.handle.max = low, high
-        label = worded(params, self.name)
-        if self.handle.label != label:
-            self.handle.label = label
+        if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
+            self.bounds = bounds
+            self.handle.min, self.handle.max = bounds
+        if (label := worded(params, self.name)) != self.label:
+            self.label = self.handle.label = label
         set_value(self.handle, self.to_control(getattr(params, self.name)))
 
 
@@ -85,12 +88,20 @@ class Viewer:
         for control in self._controls:
             control.draw(params)
         if self._readouts is not None:
-            self._readouts.content = readout.render(self.sim.readouts(params, solution))
+            html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
+            set_property(self._readouts, "content", html)
         if self._panes is not None and self.sim.panes is not None:
-            self._panes.content = pane.render(
-                self.sim.panes(params, solution, self.palette), self.palette.style()
-            )
+            panes = self.sim.panes(params, solution, self.palette)
+            set_property(self._panes, "content", pane.render(panes, self.palette.style()))
         self.client.flush()
+
+    def _regions(self, params: Params) -> str:
+        """Where on a slider's track something happens, as fractions, for the companion to mark."""
+        spans = {}
+        for name, parts in params.regions().items():
+            low, high = params.bounds(name)
+            spans[worded(params, name)] = [[(v - low) / (high - low) for v in part] for part in parts]
+        return f'<span hidden data-s3-regions="{escape(json.dumps(spans))}"></span>' if spans else ""
 
     def _dock(self) -> None:
         panel = self.client.gui.main_panel
@@ -123,13 +134,13 @@ class Viewer:
         with gui.add_folder("Actions"):
             for action in self.sim.actions:
                 self._button(action.label, action.hint, action.name)
-            self._button("Reset", "Back to the state of the link that you opened", "reset")
+            self._button("Reset", "Back to the state of the link that you opened", "reset", color="gray")
             gui.add_html(TOOLBAR)
         with gui.add_folder("Read-outs"):
             self._readouts = gui.add_html("")
 
-    def _button(self, label: str, hint: str, name: str) -> None:
-        button = self.client.gui.add_button(label, hint=hint, disabled=self.look.watching)
+    def _button(self, label: str, hint: str, name: str, color: Any = None) -> None:
+        button = self.client.gui.add_button(label, hint=hint, color=color, disabled=self.look.watching)
 
         @button.on_click
         async def _(_: Any) -> None:
@@ -143,7 +154,8 @@ class Viewer:
         shared: dict[str, Any] = {"hint": field.description, "disabled": self.look.watching}
         label = worded(params, name)
         same: Callable[[Any], Any] = lambda v: v  # noqa: E731
-        from_control, to_control, bounded = same, same, False
+        from_control, to_control = same, same
+        bounds: tuple[float, float] | None = None
         handle: Any
         if hints["control"] == "choice":
             labels = {word: hints["labels"][word] for word in choices(field)}
@@ -161,15 +173,14 @@ class Viewer:
             low, high = params.bounds(name)
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
         else:
-            low, high = params.bounds(name)
-            bounded = True
-            handle = gui.add_slider(label, low, high, hints["step"], value, **shared)
+            bounds = params.bounds(name)
+            handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
 
         @handle.on_update
         async def _(_: Any) -> None:
             self._host.change({name: from_control(handle.value)})
 
-        return Control(name, handle, to_control, bounded)
+        return Control(name, handle, to_control, label, bounds)
 
     def _dragged(self, name: str, dragged: Dragged) -> None:
         if not self.look.watching:
@@ -178,8 +189,13 @@ class Viewer:
 
 def worded(params: Params, name: str) -> str:
     """The label of a control, with its unit."""
-    unit = extra(type(params).model_fields[name]).get("unit", "")
+    unit = _unit(type(params), name)
     return f"{params.label(name)} ({unit})" if unit else params.label(name)
+
+
+@lru_cache(maxsize=1024)
+def _unit(model: type[Params], name: str) -> str:
+    return str(extra(model.model_fields[name]).get("unit", ""))
 
 
 TOOLBAR = (

@@ -1,0 +1,189 @@
+"""Pictures of the sims: thumbnails for the pages, and screenshots for people to look at.
+
+`python -m tests.shots [--out DIR] [--states] [--no-thumbs] [slug …]` writes `static/thumbs/{slug}-{theme}.webp`, and
+into DIR (`build/shots`) each sim and page at three sizes in both themes. Without slugs: every sim, and the pages.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Literal
+
+from PIL import Image
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from sims import SIMS
+from sims.kit.sim import Sim
+from tests.browser import launch_options
+
+ROOT = Path(__file__).resolve().parent.parent
+THUMBS = ROOT / "static" / "thumbs"
+THUMB = (800, 600)
+THUMB_BYTES = 40_000
+SIZES = ((1280, 800), (700, 600), (390, 780))
+THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+PAGES = {
+    "launcher": "/",
+    "page": f"/sims/{SIMS[0].slug}",
+    "bad-link": f"/sims/{SIMS[0].slug}?colour=red&view=1,2&controls=0",
+    "bad-link-framed": f"/sims/{SIMS[0].slug}/embed?colour=red",
+    "missing": "/sims/nothing",
+}
+PATIENCE = 90_000
+
+
+def main() -> None:
+    args = arguments()
+    args.out.mkdir(parents=True, exist_ok=True)
+    THUMBS.mkdir(parents=True, exist_ok=True)
+    with serving() as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(**launch_options())
+        for sim in SIMS:
+            if sim.slug in (args.slugs or [sim.slug]):
+                for theme in THEMES:
+                    if args.thumbs:
+                        thumbnail(browser, address, sim, theme)
+                    review(browser, address, sim, theme, args.out)
+                if args.states:
+                    states(browser, address, sim, args.out)
+        if not args.slugs:
+            pages(browser, address, args.out)
+        browser.close()
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m tests.shots", description=__doc__)
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "shots", help="folder of the screenshots")
+    parser.add_argument("--states", action="store_true", help="also each sim at its singular states")
+    parser.add_argument("--no-thumbs", dest="thumbs", action="store_false", help="leave the thumbnails alone")
+    parser.add_argument("slugs", nargs="*", choices=[*(sim.slug for sim in SIMS), []], metavar="slug")
+    return parser.parse_args()
+
+
+@contextmanager
+def serving() -> Iterator[str]:
+    """The application in a process of its own, on a port that the system chooses; yields its address."""
+    environment = os.environ | {"SIM3_HOST": "127.0.0.1", "SIM3_PORT": "0", "SIM3_ROOT_PATH": ""}
+    command = [sys.executable, "-m", "app"]
+    with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stdout is not None
+            ready = next((line for line in server.stdout if "http://" in line), None)
+            if ready is None:
+                raise SystemExit("The application didn't start.")
+            yield "http://127.0.0.1:" + ready.split("http://", 1)[1].split("/", 1)[0].rsplit(":", 1)[1]
+        finally:
+            server.terminate()
+
+
+@contextmanager
+def opened(
+    browser: Browser, address: str, size: tuple[int, int], theme: Literal["light", "dark"]
+) -> Iterator[Page]:
+    """A page of that size and theme, closed afterwards."""
+    width, height = size
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, color_scheme=theme, reduced_motion="reduce"
+    )
+    try:
+        page = context.new_page()
+        page.goto(address)
+        yield page
+    finally:
+        context.close()
+
+
+def wait_live(page: Page) -> None:
+    """Wait until every sim on the page, itself or in a frame, is drawn."""
+    for frame in page.frames:
+        if "/s/" in frame.url or "/embed" in frame.url:
+            frame.wait_for_function("window.sim3?.live === true", timeout=PATIENCE)
+            frame.wait_for_selector(".s3-still", state="detached", timeout=PATIENCE)
+            frame.wait_for_selector(".mantine-Notification-root", state="detached", timeout=PATIENCE)
+    settled(page)
+
+
+def settled(page: Page) -> None:
+    """Wait until two pictures in a row are the same."""
+    before = page.screenshot()
+    for _ in range(20):
+        page.wait_for_timeout(300)
+        after = page.screenshot()
+        if after == before:
+            return
+        before = after
+
+
+def thumbnail(browser: Browser, address: str, sim: Sim[Any, Any], theme: Literal["light", "dark"]) -> None:
+    """The bare scene; the window grows by whatever docked panels take from the canvas."""
+    with opened(browser, f"{address}/sims/{sim.slug}/embed?controls=0&theme={theme}", THUMB, theme) as page:
+        wait_live(page)
+        width, height = (2 * wanted - got for wanted, got in zip(THUMB, canvas(page)[2:], strict=True))
+        page.set_viewport_size({"width": round(width), "height": round(height)})
+        settled(page)
+        x, y, width, height = canvas(page)
+        picture = page.screenshot(clip={"x": x, "y": y, "width": width, "height": height})
+    path = THUMBS / f"{sim.slug}-{theme}.webp"
+    path.write_bytes(as_webp(picture))
+    print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1000:.0f} kB")
+
+
+def canvas(page: Page) -> tuple[float, float, float, float]:
+    """Left, top, width and height of the scene on the page."""
+    box = page.locator("canvas[data-engine]").bounding_box()
+    assert box is not None
+    return box["x"], box["y"], box["width"], box["height"]
+
+
+def as_webp(png: bytes) -> bytes:
+    """The best quality that keeps a thumbnail light."""
+    image = Image.open(io.BytesIO(png)).convert("RGB").resize(THUMB, Image.Resampling.LANCZOS)
+    for quality in range(90, 30, -5):
+        out = io.BytesIO()
+        image.save(out, "webp", quality=quality, method=6)
+        if out.tell() < THUMB_BYTES:
+            break
+    return out.getvalue()
+
+
+def review(browser: Browser, address: str, sim: Sim[Any, Any], theme: Literal["light", "dark"], out: Path) -> None:
+    """A sim as it opens, at every size."""
+    for size in SIZES:
+        with opened(browser, f"{address}/sims/{sim.slug}/embed", size, theme) as page:
+            wait_live(page)
+            save(page, out / f"{sim.slug}-{size[0]}x{size[1]}-{theme}.png")
+
+
+def states(browser: Browser, address: str, sim: Sim[Any, Any], out: Path) -> None:
+    """A sim at each of its named states."""
+    for name, changes in sim.states.items():
+        query = sim.params().changed(changes).query()
+        with opened(browser, f"{address}/sims/{sim.slug}/embed?{query}", SIZES[0], "light") as page:
+            wait_live(page)
+            save(page, out / f"{sim.slug}-{name.replace(' ', '-')}.png")
+
+
+def pages(browser: Browser, address: str, out: Path) -> None:
+    """The pages around the sims, in full length."""
+    for name, path in PAGES.items():
+        for theme in THEMES:
+            for size in SIZES:
+                with opened(browser, address + path, size, theme) as page:
+                    wait_live(page)
+                    save(page, out / f"{name}-{size[0]}x{size[1]}-{theme}.png", full_page=True)
+
+
+def save(page: Page, path: Path, *, full_page: bool = False) -> None:
+    page.screenshot(path=path, full_page=full_page)
+    print(path)
+
+
+if __name__ == "__main__":
+    main()
