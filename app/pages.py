@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import gzip
 import hashlib
 import json
 import math
@@ -14,6 +15,7 @@ from fastapi.responses import HTMLResponse, Response
 from starlette.templating import Jinja2Templates
 
 from app.settings import ROOT
+from sims import by_slug
 from sims import SIMS
 from sims.kit.params import Complaint
 from sims.kit.sim import Sim
@@ -40,7 +42,11 @@ def fingerprint(name: str) -> str:
 
 def static(request: Request, name: str) -> str:
     """Address of a static file."""
-    return f"{base(request)}/static/{name}?v={fingerprint(name)}"
+    return _static(base(request), name)
+
+
+def _static(prefix: str, name: str) -> str:
+    return f"{prefix}/static/{name}?v={fingerprint(name)}"
 
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
@@ -76,21 +82,35 @@ def _is_view(text: str) -> bool:
 
 def viewer(request: Request, sim: AnySim, *, watching: bool) -> Response:
     """viser's client with our companion in its head."""
+    html, zipped = _viewer_page(base(request), sim.slug, watching)
+    headers = {"cache-control": "no-store", "vary": "accept-encoding"}
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        return HTMLResponse(zipped, headers={**headers, "content-encoding": "gzip"})
+    return HTMLResponse(html, headers=headers)
+
+
+@functools.lru_cache(maxsize=64)
+def _viewer_page(prefix: str, slug: str, watching: bool) -> tuple[bytes, bytes]:
+    """The page and its compressed form: compressing 800 kB at each opening would hold up everybody else."""
+    sim = by_slug(slug)
+    assert sim is not None
     data = {
         "slug": sim.slug, "title": sim.title, "watching": watching,
         "view": [*sim.view.position, *sim.view.look_at], "radius": sim.view.radius, "panes": sim.panes is not None,
-        "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
+        "still": {theme: _static(prefix, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     head = (
         f"<title>{escape(sim.title)} — Sim3</title>"
-        f'<link rel="icon" href="{static(request, "icons/sim3.svg")}" type="image/svg+xml">'
-        f'<link rel="stylesheet" href="{static(request, "tokens.css")}">'
-        f'<link rel="stylesheet" href="{static(request, "viewer.css")}">'
+        f'<link rel="icon" href="{_static(prefix, "icons/sim3.svg")}" type="image/svg+xml">'
+        f'<link rel="stylesheet" href="{_static(prefix, "tokens.css")}">'
+        f'<link rel="stylesheet" href="{_static(prefix, "viewer.css")}">'
         f'<script id="sim3" type="application/json">{json.dumps(data).replace("<", chr(92) + "u003c")}</script>'
-        f'<script src="{static(request, "boot.js")}"></script>'
-        f'<script type="module" src="{static(request, "sim.js")}"></script>'
+        f'<script src="{_static(prefix, "boot.js")}"></script>'
+        f'<script type="module" src="{_static(prefix, "sim.js")}"></script>'
     )
-    return HTMLResponse(_around_head()[0] + head + _around_head()[1], headers={"cache-control": "no-store"})
+    before, after = _around_head()
+    html = (before + head + after).encode()
+    return html, gzip.compress(html, 6)
 
 
 @functools.cache

@@ -47,7 +47,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
-    app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
+    app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions)
     _add_api(app)
@@ -58,6 +58,16 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         return {"status": "ok", "sims": len(SIMS), "sessions": len(sessions)}
 
     return app
+
+
+class Static(StaticFiles):
+    """Files that never change under their address, also for frames that are sandboxed into an origin of their own."""
+
+    def file_response(self, *args: Any, **kwargs: Any) -> Response:
+        response = super().file_response(*args, **kwargs)
+        response.headers["access-control-allow-origin"] = "*"
+        response.headers["cache-control"] = "public, max-age=31536000, immutable"
+        return response
 
 
 def sim_or_404(slug: str) -> AnySim:

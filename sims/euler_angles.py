@@ -28,6 +28,7 @@ NEAR_LOCK = 15.0
 TAIT_BRYAN = {"z": "yaw", "y": "pitch", "x": "roll"}
 NAMES = {"yaw": "Yaw ψ", "pitch": "Pitch θ", "roll": "Roll φ"}
 PROPER = {"yaw": "First α", "pitch": "Second β", "roll": "Third γ"}
+SHORT = {"yaw": "α", "pitch": "β", "roll": "γ"}
 # In which direction each turn is seen: the nose for turns about z and y, the left wing for turns about x.
 SEEN = {"z": "x", "y": "x", "x": "y"}
 
@@ -82,8 +83,12 @@ class EulerParams(Params):
         """Where the middle angle is near lock, for the slider's track."""
         name = self.names[1]
         low, high = self.bounds(name)
-        locks = (0.0, 180.0) if self.proper else (-90.0, 90.0)
-        return {name: [(max(low, v - NEAR_LOCK), min(high, v + NEAR_LOCK)) for v in locks]}
+        return {name: [(max(low, v - NEAR_LOCK), min(high, v + NEAR_LOCK)) for v in self.locks]}
+
+    @property
+    def locks(self) -> tuple[float, float]:
+        """Values of the middle angle, in degrees, at which the order locks."""
+        return (0.0, 180.0) if self.proper else (-90.0, 90.0)
 
 
 @dataclass(frozen=True)
@@ -154,7 +159,8 @@ def _turns(p: EulerParams, applied: list[float]) -> tuple[Turn, ...]:
         else:
             before = quaternion.multiply(before, turn) if p.frame == "extrinsic" else before
         current = k < p.progress < k + 1
-        turns.append(Turn(p.names[k], math.degrees(angle), turn, seen, current))
+        name = SHORT[p.names[k]] if p.proper else p.names[k]
+        turns.append(Turn(name, math.degrees(angle), turn, seen, current))
     return tuple(turns)
 
 
@@ -179,7 +185,6 @@ def _arc_frame(axis: str) -> Quaternion:
 
 
 ARC_FRAMES = {axis: _arc_frame(axis) for axis in "xyz"}
-RADII = {"z": 1.35, "y": 1.2, "x": 0.8}
 
 
 class EulerScene:
@@ -208,24 +213,22 @@ class EulerScene:
             self._rebuild(p)
         for frame, arc, turn in zip(self.frames, self.arcs, s.turns, strict=True):
             frame.pose(turn.wxyz)
-            arc.draw(turn, s.lock_distance < NEAR_LOCK)
-        self.frames[0].show(abs(s.turns[1].applied) + abs(s.turns[2].applied) > 0.0)
-        self.frames[1].show(True)
+            arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
 
     def _rebuild(self, p: EulerParams) -> None:
         self.order = p.order
         for arc in self.arcs:
             arc.remove()
         self.arcs = [
-            Arc(self.stage, f"{before}/arc{k}", axis, 1.0 + 0.18 * (2 - k), lock=k == 1 and p.proper)
+            Arc(self.stage, f"{before}/arc{k}", axis, 1.5 - 0.3 * k, p.locks if k == 1 else ())
             for k, (before, axis) in enumerate(zip(self.befores, p.order, strict=True))
         ]
 
 
 class Arc:
-    """The arc of one turn with its label and, while the turn is being made, its axis."""
+    """The arc of one turn with its label, its axis while the turn is being made, and the region near lock."""
 
-    def __init__(self, stage: Stage, name: str, axis: str, radius: float, *, lock: bool) -> None:
+    def __init__(self, stage: Stage, name: str, axis: str, radius: float, locks: tuple[float, ...]) -> None:
         self.node = stage.group(name)
         self.radius = radius
         dash = {"x": None, "y": (0.14, 0.05), "z": (0.06, 0.045)}[axis]
@@ -235,9 +238,13 @@ class Arc:
         self.axis = stage.lines(f"{name}/axis", [(0, 0, -1.7), (0, 0, 1.7)], axis, width=5.0)
         self.axis.show(False)
         self.label = stage.label(f"{name}/label", "")
-        self.shown = ""
+        self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
+        self.locks = locks
+        for lock in locks:
+            region = stage.lines(f"{name}/lock{lock:.0f}", np.zeros((2, 3)), "warn", width=3.0, dash=(0.03, 0.03))
+            region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
 
-    def draw(self, turn: Turn, near_lock: bool) -> None:
+    def draw(self, turn: Turn, *, near_lock: bool) -> None:
         radians = math.radians(turn.applied)
         self.node.pose(turn.seen)
         visible = abs(turn.applied) > 0.5
@@ -248,6 +255,10 @@ class Arc:
         self.axis.show(turn.current)
         self.label.pose(position=(1.1 * self.radius * math.cos(radians / 2), 1.1 * self.radius * math.sin(radians / 2), 0.0))
         self.label.text(f"{turn.name} {quantity(turn.applied, '°', 0)}")
+        if self.warning is not None:
+            lock = math.radians(min(self.locks, key=lambda v: abs(v - turn.applied)))
+            self.warning.show(near_lock)
+            self.warning.pose(position=(1.12 * self.radius * math.cos(lock), 1.12 * self.radius * math.sin(lock), 0.0))
 
     def remove(self) -> None:
         self.node.handle.remove()

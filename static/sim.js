@@ -146,6 +146,7 @@ document.addEventListener("pointerdown", (event) => {
   const svg = grip.closest("svg");
   const start = place(event, svg);
   grip.focus({ preventScroll: true });
+  document.documentElement.setPointerCapture(event.pointerId);
   held = {
     pointer: event.pointerId, dx: Number(grip.dataset.x) - start.x, dy: Number(grip.dataset.y) - start.y,
     name: grip.dataset.handle, svgName: svg.dataset.pane,
@@ -271,8 +272,7 @@ function goLive() {
   if (kept.get("controls") !== "0" && !document.querySelector(".s3-readouts")) return;
   sim.live = true;
   showAddress();
-  still.classList.add("s3-gone");
-  setTimeout(() => still.remove(), 400);
+  still.remove();
   describeScene(state.text);
   post({ type: "sim3:ready" });
   post({ type: "sim3:height", height: document.documentElement.scrollHeight });

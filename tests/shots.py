@@ -25,7 +25,8 @@ from tests.browser import launch_options
 
 ROOT = Path(__file__).resolve().parent.parent
 THUMBS = ROOT / "static" / "thumbs"
-THUMB = (800, 600)
+THUMB = (640, 480)
+THUMB_SCALE = 1.25
 THUMB_BYTES = 40_000
 SIZES = ((1280, 800), (700, 600), (390, 780))
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
@@ -85,13 +86,14 @@ def serving() -> Iterator[str]:
 
 @contextmanager
 def opened(
-    browser: Browser, address: str, size: tuple[int, int], theme: Literal["light", "dark"]
+    browser: Browser, address: str, size: tuple[int, int], theme: Literal["light", "dark"], scale: float = 1.0
 ) -> Iterator[Page]:
     """A page of that size and theme, closed afterwards."""
     width, height = size
     context = browser.new_context(
-        viewport={"width": width, "height": height}, color_scheme=theme, reduced_motion="reduce"
-    )
+        viewport={"width": width, "height": height}, device_scale_factor=scale, color_scheme=theme,
+        reduced_motion="reduce",
+    )  # fmt: skip
     try:
         page = context.new_page()
         page.goto(address)
@@ -123,10 +125,12 @@ def settled(page: Page) -> None:
 
 def thumbnail(browser: Browser, address: str, sim: Sim[Any, Any], theme: Literal["light", "dark"]) -> None:
     """The bare scene; the window grows by whatever docked panels take from the canvas."""
-    with opened(browser, f"{address}/sims/{sim.slug}/embed?controls=0&theme={theme}", THUMB, theme) as page:
+    bare = f"{address}/sims/{sim.slug}/embed?controls=0&theme={theme}"
+    with opened(browser, bare, THUMB, theme, THUMB_SCALE) as page:
         wait_live(page)
         width, height = (2 * wanted - got for wanted, got in zip(THUMB, canvas(page)[2:], strict=True))
         page.set_viewport_size({"width": round(width), "height": round(height)})
+        page.add_style_tag(content="* { box-shadow: none !important }")
         settled(page)
         x, y, width, height = canvas(page)
         picture = page.screenshot(clip={"x": x, "y": y, "width": width, "height": height})
@@ -144,7 +148,7 @@ def canvas(page: Page) -> tuple[float, float, float, float]:
 
 def as_webp(png: bytes) -> bytes:
     """The best quality that keeps a thumbnail light."""
-    image = Image.open(io.BytesIO(png)).convert("RGB").resize(THUMB, Image.Resampling.LANCZOS)
+    image = Image.open(io.BytesIO(png)).convert("RGB")
     for quality in range(90, 30, -5):
         out = io.BytesIO()
         image.save(out, "webp", quality=quality, method=6)

@@ -44,13 +44,14 @@ def correct_matches(
     """
     pairs, defined = pixel_pairs(uv_left, uv_right)
     # One scale for both images keeps the least correction what it is, and the numbers near one.
-    scale = left.K[0, 0]
+    scale = left.K.item(0, 0)
     x = (pairs - np.concatenate([left.K[:2, 2], right.K[:2, 2]])) / scale
     F = _unscaled(right, scale).T @ essential(left, right) @ _unscaled(left, scale)
     with np.errstate(all="ignore"):
         move, settled = _lindstrom(F, components(x))
-    for index in map(tuple, np.argwhere(~settled)):
-        move[index] = least_correction(F, x[index])
+    if not settled.all():
+        for index in map(tuple, np.argwhere(~settled)):
+            move[index] = least_correction(F, x[index])
     corrected = pairs + np.where(defined[..., None], scale * move, np.nan)
     return corrected[..., :2], corrected[..., 2:]
 

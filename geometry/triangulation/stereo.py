@@ -26,8 +26,8 @@ def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float
 def depth_sigma(depth: npt.ArrayLike, baseline: float, focal: float, sigma: float) -> Array:
     """Return the standard deviation (...) in metres of the depth (...) of a point seen by a parallel rig.
 
-    √2 σ Z² / (f b), for independent noise of sigma pixels in each coordinate of both pixels: exactly the depth
-    entry of `covariance`, wherever the point is, since the two v tell no more than its height.
+    √2 σ Z² / (f b), for independent noise of sigma pixels in each coordinate of both pixels: the depth entry
+    of `covariance`, exactly, and wherever the point is, since the two v tell no more than its height.
     NaN unless the depth is above 0. Raises GeometryError unless baseline, focal and sigma are above 0.
     Source: Hartley and Zisserman 2004, sec. 5.2.1, applied to Z = f b / d with σ_d = √2 σ.
     """

@@ -28,13 +28,11 @@ def aircraft() -> dict[str, trimesh.Trimesh]:
     nose.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
     _moved(nose, (0.68, 0.0, 0.0))
     canopy = _moved(icosphere(subdivisions=2).apply_scale((0.2, 0.075, 0.09)), (0.3, 0.0, 0.1))
-    wings = _slab([(0.3, 0.0), (-0.02, 0.74), (-0.24, 0.74), (-0.2, 0.0), (-0.24, -0.98), (-0.06, -0.98)], 0.035)
     right = _slab([(0.26, 0.0), (-0.06, -0.98), (-0.24, -0.98), (-0.22, 0.0)], 0.035)
     left = _slab([(0.26, 0.0), (0.017, 0.745), (-0.24, 0.745), (-0.22, 0.0)], 0.035)
     tail = _slab([(-0.6, 0.0), (-0.76, 0.36), (-0.88, 0.36), (-0.84, 0.0), (-0.88, -0.36), (-0.76, -0.36)], 0.028)
     fin = _slab([(-0.52, 0.0), (-0.78, 0.36), (-0.9, 0.36), (-0.86, 0.0)], 0.03)
     fin.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
-    del wings
     mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
     hull = trimesh.util.concatenate([fuselage, nose, canopy, left, right, tail, fin])
     return {"hull": hull, "mark": mark}

@@ -35,7 +35,13 @@ def _number(value: float, digits: int) -> str:
 def mathml(value: Any, digits: int = 3) -> str:
     """A number, vector (as a column) or matrix in MathML."""
     array = np.asarray(value, dtype=float)
-    return _layout(array.shape) % tuple([figure(v, digits) for v in array.ravel().tolist()])
+    return _mathml(array.shape, array.tobytes(), digits)
+
+
+@lru_cache(maxsize=512)
+def _mathml(shape: tuple[int, ...], numbers: bytes, digits: int) -> str:
+    """As `mathml`; most matrices of a state were in the state before it too."""
+    return _layout(shape) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
 
 
 @lru_cache(maxsize=32)

@@ -149,8 +149,8 @@ class Stage:
             position=(0.0, 0.0, height), shadow_opacity=0.0,
         )  # fmt: skip
         self.scene.configure_default_lights(enabled=False)
-        self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=0.5)
-        self.scene.add_light_directional("/sun", intensity=1.1, position=(2.0, -3.0, 6.0))
+        self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=0.15)
+        self.scene.add_light_directional("/sun", intensity=0.45, position=(2.0, -3.0, 6.0))
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""

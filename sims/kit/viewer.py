@@ -83,16 +83,17 @@ class Viewer:
         self.scene = sim.scene(Stage(client, self.palette, self._dragged))
 
     def draw(self, params: Params, solution: Any) -> None:
-        """Show a state; only what differs is sent."""
-        self.scene.draw(params, solution)
-        for control in self._controls:
-            control.draw(params)
-        if self._readouts is not None:
-            html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
-            set_property(self._readouts, "content", html)
-        if self._panes is not None and self.sim.panes is not None:
-            panes = self.sim.panes(params, solution, self.palette)
-            set_property(self._panes, "content", pane.render(panes, self.palette.style()))
+        """Show a state; only what differs is sent, in one window."""
+        with self.client.atomic():
+            self.scene.draw(params, solution)
+            for control in self._controls:
+                control.draw(params)
+            if self._readouts is not None:
+                html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
+                set_property(self._readouts, "content", html)
+            if self._panes is not None and self.sim.panes is not None:
+                panes = self.sim.panes(params, solution, self.palette)
+                set_property(self._panes, "content", pane.render(panes, self.palette.style()))
         self.client.flush()
 
     def _regions(self, params: Params) -> str:

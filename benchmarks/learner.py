@@ -1,0 +1,156 @@
+"""A simulated learner: both websockets of a page, a slider that moves, and what comes back."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+import secrets
+from collections.abc import Sequence
+from contextlib import AsyncExitStack, suppress
+from time import perf_counter
+from typing import Any
+
+import msgspec
+import viser
+import zstandard
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
+
+PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
+SLIDER = "Yaw"
+TURNED = "/turn1"
+"""The node whose orientation is the slider's angle about z, in both ways of writing the sim."""
+FIRST, TURN = -179, 359
+"""Slider values are whole degrees from FIRST on, no two alike within TURN of them."""
+HELLO = {"type": "hello", "dark": False, "reduced": False, "width": 1280, "controls": True, "query": ""}
+CAMERA = {
+    "type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (3.3, -3.0, 2.0), "fov": 0.7,
+    "near": 0.01, "far": 1000.0, "image_height": 800, "image_width": 1280, "look_at": (0.0, 0.0, 0.0),
+    "up_direction": (0.0, 0.0, 1.0),
+}  # fmt: skip
+
+
+class Message(msgspec.Struct):
+    """The few fields of viser's messages that tell which state they show."""
+
+    type: str
+    name: str | None = None
+    uuid: str = ""
+    wxyz: tuple[float, float, float, float] | None = None
+    props: msgspec.Raw = msgspec.Raw()
+
+
+class Frame(msgspec.Struct):
+    """What one websocket frame holds."""
+
+    messages: list[Message]
+
+
+_frames = msgspec.msgpack.Decoder(Frame)
+_zstd = zstandard.ZstdDecompressor()
+_encode = msgspec.msgpack.Encoder().encode
+
+
+def messages(frame: bytes) -> list[Message]:
+    """viser's messages in a frame."""
+    raw, packed = int.from_bytes(frame[:8], "little"), int.from_bytes(frame[8:16], "little")
+    return _frames.decode(_zstd.decompress(frame[16 : 16 + packed], max_output_size=raw)).messages
+
+
+class Learner:
+    """One page in a room of its own."""
+
+    def __init__(self, host: str, path: str) -> None:
+        self._url = f"ws://{host}{path}"
+        self._stack = AsyncExitStack()
+        self._viser: ClientConnection
+        self._tasks: list[asyncio.Task[None]] = []
+        self._slider = ""
+        self._opened = asyncio.Event()
+        self.values: list[int] = []
+        self._index: dict[int, int] = {}
+        self.sent: list[float] = []
+        self.ages: list[float] = []
+        """Seconds from sending each value until that state or a later one came, in order."""
+        self.delays: list[float] = []
+        """Of the values that were drawn: seconds from sending it until its own state came."""
+        self.late: list[float] = []
+        """Seconds by which each value was sent too late."""
+        self.backwards = 0
+        self.shown: int | None = None
+
+    async def open(self, *, within: float = 60.0) -> None:
+        """Connect as the page does; returns when the controls and the first state have come."""
+        viewer = secrets.token_hex(8)
+        options: dict[str, Any] = {"compression": None, "max_size": None, "ping_interval": None}
+        if "/s/" in self._url:
+            channel = connect(f"{self._url}channel?viewer={viewer}", **options)
+            await self._listen(await self._stack.enter_async_context(channel))
+        viser_socket = connect(f"{self._url}?viewer={viewer}", subprotocols=[PROTOCOL], **options)
+        self._viser = await self._stack.enter_async_context(viser_socket)
+        await self._viser.send(_encode(CAMERA))
+        self._tasks.append(asyncio.create_task(self._watch()))
+        await asyncio.wait_for(self._opened.wait(), within)
+
+    async def _listen(self, channel: ClientConnection) -> None:
+        await channel.send(json.dumps(HELLO))
+
+        async def listen() -> None:
+            with suppress(ConnectionClosed):
+                async for _ in channel:
+                    pass
+
+        self._tasks.append(asyncio.create_task(listen()))
+
+    async def _watch(self) -> None:
+        with suppress(ConnectionClosed):
+            async for frame in self._viser:
+                if isinstance(frame, bytes):
+                    self._look(frame, perf_counter())
+
+    def _look(self, frame: bytes, now: float) -> None:
+        for message in messages(frame):
+            if message.wxyz is not None and message.name == TURNED:
+                w, _, _, z = message.wxyz
+                self._see(round(math.degrees(2.0 * math.atan2(z, w))), now)
+            elif message.type == "GuiSliderMessage" and SLIDER in str(msgspec.msgpack.decode(message.props)):
+                self._slider = message.uuid
+
+    def _see(self, value: int, now: float) -> None:
+        self.shown = value
+        if self._slider:
+            self._opened.set()
+        index = self._index.get(value)
+        if index is None:
+            return
+        if index < len(self.ages):
+            self.backwards += 1
+            return
+        self.ages += [now - at for at in self.sent[len(self.ages) : index + 1]]
+        self.delays.append(now - self.sent[index])
+
+    async def drag(self, values: Sequence[int], rate: float, begin: float) -> None:
+        """Move the slider through `values`, `rate` of them a second, from the loop's time `begin` on."""
+        self.values = list(values)
+        self._index = {value: index for index, value in enumerate(values)}
+        self.sent, self.ages, self.delays, self.late = [], [], [], []
+        loop = asyncio.get_running_loop()
+        for index, value in enumerate(values):
+            due = begin + index / rate
+            await asyncio.sleep(due - loop.time())
+            self.late.append(loop.time() - due)
+            self.sent.append(perf_counter())
+            update = {"type": "GuiUpdateMessage", "uuid": self._slider, "updates": {"value": value}}
+            await self._viser.send(_encode(update))
+
+    @property
+    def arrived(self) -> bool:
+        """The last value that was sent is what is shown."""
+        return self.shown == self.values[-1]
+
+    async def close(self) -> None:
+        """Go, as a closed page goes."""
+        await self._stack.aclose()
+        await asyncio.gather(*self._tasks)

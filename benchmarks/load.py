@@ -1,0 +1,146 @@
+"""The load generator, a process of its own: many learners at one server. `python -m benchmarks.load JOB`."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+import uvloop
+
+from benchmarks.learner import FIRST, TURN, Learner
+from benchmarks.servers import LOAD_CORE, cpu_seconds, resident
+
+RATE = 20.0
+"""Values a second, which is as often as viser's page sends them."""
+WARM_UP = 10
+LAST_WITHIN = 2.0
+Job = dict[str, Any]
+Result = dict[str, float]
+
+
+async def drag(job: Job) -> Result:
+    """All learners drag at once for some seconds."""
+    learners = [Learner(job["host"], path) for path in job["paths"]]
+    await _open(learners)
+    await _drag_all(learners, list(range(FIRST, FIRST + WARM_UP)))
+    await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
+    pid = job["pid"]
+    memory, cpu, own, begin = resident(pid), cpu_seconds(pid), _own_cpu(), time.perf_counter()
+    await _drag_all(learners, _values(int(job["seconds"] * RATE)))
+    took, cpu_dragging = time.perf_counter() - begin, cpu_seconds(pid) - cpu
+    own_share, memory_after = (_own_cpu() - own) / took, resident(pid)
+    await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
+    now, cpu = time.perf_counter(), cpu_seconds(pid) - cpu
+    sent = sum(len(x.sent) for x in learners)
+    drawn = sum(len(x.delays) for x in learners)
+    unanswered = [now - at for x in learners for at in x.sent[len(x.ages) :]]
+    result = {
+        "learners": len(learners), "sent": sent, "drawn": drawn, "unanswered": len(unanswered),
+        "lost_last": sum(not x.arrived for x in learners), "backwards": sum(x.backwards for x in learners),
+        "cpu_ms_per_update": 1e3 * cpu / sent, "cpu_ms_per_drawn": 1e3 * cpu / max(drawn, 1),
+        "server_share": cpu_dragging / took, "load_share": own_share,
+        "rss_before_mb": memory, "rss_after_mb": memory_after,
+        **_percentiles("delay", [d for x in learners for d in x.delays]),
+        **_percentiles("age", [*(a for x in learners for a in x.ages), *unanswered]),
+        **_percentiles("late", [s for x in learners for s in x.late]),
+    }  # fmt: skip
+    await _close(learners)
+    return result
+
+
+async def idle(job: Job) -> Result:
+    """Memory of learners who only look; the first few, which also warm the server up, aren't counted."""
+    learners = [Learner(job["host"], path) for path in job["paths"]]
+    first, rest = learners[: job["first"]], learners[job["first"] :]
+    await _open(first)
+    before = await _settled(job["pid"])
+    await _open(rest)
+    after = await _settled(job["pid"])
+    cpu = cpu_seconds(job["pid"])
+    await asyncio.sleep(2.0)
+    share = (cpu_seconds(job["pid"]) - cpu) / 2.0
+    await _close(learners)
+    return {"sessions": len(rest), "mb_per_session": (after - before) / len(rest), "idle_share": share}
+
+
+async def churn(job: Job) -> Result:
+    """Open and close, a few at a time."""
+    paths = iter(job["paths"])
+
+    async def visitor() -> None:
+        for path in paths:
+            learner = Learner(job["host"], path)
+            await learner.open()
+            await learner.close()
+
+    cpu = cpu_seconds(job["pid"])
+    await asyncio.gather(*(visitor() for _ in range(5)))
+    cpu = cpu_seconds(job["pid"]) - cpu
+    return {"opened": len(job["paths"]), "cpu_ms_per_open": 1e3 * cpu / len(job["paths"])}
+
+
+def _values(count: int) -> list[int]:
+    return [FIRST + (WARM_UP + k) % TURN for k in range(count)]
+
+
+async def _drag_all(learners: list[Learner], values: list[int]) -> None:
+    begin = asyncio.get_running_loop().time() + 0.1
+    phase = 1.0 / RATE / len(learners)
+    await asyncio.gather(*(x.drag(values, RATE, begin + k * phase) for k, x in enumerate(learners)))
+
+
+async def _wait(condition: Callable[[], bool], within: float) -> None:
+    end = time.perf_counter() + within
+    while not condition() and time.perf_counter() < end:
+        await asyncio.sleep(0.01)
+
+
+async def _open(learners: list[Learner], at_once: int = 10) -> None:
+    waiting = iter(learners)
+
+    async def opener() -> None:
+        for learner in waiting:
+            await learner.open()
+
+    await asyncio.gather(*(opener() for _ in range(at_once)))
+    await asyncio.sleep(0.5)
+
+
+async def _close(learners: Iterable[Learner]) -> None:
+    await asyncio.gather(*(learner.close() for learner in learners))
+
+
+async def _settled(pid: int) -> float:
+    await asyncio.sleep(1.0)
+    return resident(pid)
+
+
+def _own_cpu() -> float:
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime
+
+
+def _percentiles(name: str, seconds: list[float]) -> Result:
+    levels = (50, 95, 99)
+    found = np.percentile(seconds, levels) if seconds else [float("nan")] * 3
+    return {f"{name}_p{level}_ms": 1e3 * float(v) for level, v in zip(levels, found, strict=True)}
+
+
+JOBS = {"drag": drag, "idle": idle, "churn": churn}
+
+
+def main() -> None:
+    os.sched_setaffinity(0, {LOAD_CORE})
+    job = json.load(sys.stdin)
+    json.dump(uvloop.run(JOBS[job["kind"]](job)), sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,389 @@
+"""The server as a process of its own, and sessions in this process with simulated browsers on them.
+
+with Server(SIM3_MAX_SESSIONS="3") as server:       # the real thing, for HTTP and websockets
+    httpx.get(server.url + "/healthz")
+
+with Rig(sim, params) as rig:                       # no sockets: what viser sends goes into a SceneModel
+    rig.browser.move("yaw", 45)
+    rig.settle()
+    rig.browser.model.world_pose("/turn1")
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import itertools
+import logging
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TypeVar
+from urllib.error import URLError
+from urllib.request import urlopen
+
+import viser
+
+from app.messages import decoder
+from app.session import Sessions
+from sims.kit.params import Params
+from sims.kit.sim import Sim
+from sims.kit.viewer import Look, Viewer
+from sims.kit.viser_internals import ViserHost, Wire
+from tests.frames import GuiElement, SceneModel, encode_message
+
+ROOT = Path(__file__).resolve().parent.parent
+PATIENCE = 20.0
+"""Seconds after which a test gives up on something that should take a fraction of one."""
+COMPLAINT = re.compile(r"Traceback|never retrieved|never awaited|Exception|Warning|^(ERROR|CRITICAL)\b", re.M)
+T = TypeVar("T")
+
+
+def free_port() -> int:
+    """A port that nothing listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def wait_for(happened: Callable[[], T], what: str, patience: float = PATIENCE) -> T:
+    """Wait until `happened` answers something true; what it answered."""
+    until = time.monotonic() + patience
+    while True:
+        if answer := happened():
+            return answer
+        if time.monotonic() > until:
+            raise AssertionError(f"waited {patience:g} s in vain for {what}")
+        time.sleep(0.005)
+
+
+class Server:
+    """`python -m app` on a free port of this machine; settings as keyword arguments (`SIM3_…="…"`)."""
+
+    def __init__(self, **settings: str) -> None:
+        self.port = free_port()
+        self._settings = settings
+        self._log = tempfile.TemporaryFile("ab+")  # noqa: SIM115 — open as long as the server is
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: Any) -> None:
+        self.stop()
+        complaints, log = self.complaints(), self.log()
+        self._log.close()
+        if kind is None and complaints:
+            raise AssertionError(f"the server complained of {complaints}:\n{log}")
+
+    @property
+    def origin(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def url(self) -> str:
+        """Address of the launcher, without the slash at its end."""
+        return self.origin + self._settings.get("SIM3_ROOT_PATH", "")
+
+    @property
+    def pid(self) -> int:
+        assert self._process is not None, "the server isn't running"
+        return self._process.pid
+
+    def start(self) -> None:
+        """Start, and wait until /healthz answers."""
+        inherited = {k: v for k, v in os.environ.items() if not k.startswith("SIM3_")}
+        own = {"SIM3_HOST": "127.0.0.1", "SIM3_PORT": str(self.port), "PYTHONUNBUFFERED": "1"}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "app"],
+            cwd=ROOT,
+            env={**inherited, **own, **self._settings},
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+        )
+        try:
+            wait_for(self._answers, "the server to answer /healthz")
+        except BaseException:
+            self.kill()
+            raise AssertionError(f"the server didn't start:\n{self.log()}") from None
+
+    def stop(self) -> None:
+        """End it as an administrator would, and wait until it is gone."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.send_signal(signal.SIGTERM)
+            try:
+                self._process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                self.kill()
+                raise AssertionError(f"the server didn't end when told to:\n{self.log()}") from None
+
+    def kill(self) -> None:
+        """End it as a crash would: at once, without a word to anybody."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait(PATIENCE)
+
+    def restart(self, *, hard: bool = True) -> None:
+        """End it and start it again on the same port."""
+        (self.kill if hard else self.stop)()
+        self.start()
+
+    def log(self) -> str:
+        """All that it printed so far, on both outputs."""
+        size = os.fstat(self._log.fileno()).st_size
+        return os.pread(self._log.fileno(), size, 0).decode(errors="replace")
+
+    def complaints(self) -> list[str]:
+        """Lines of the log that tell of something unhandled."""
+        return [line for line in self.log().splitlines() if COMPLAINT.search(line)]
+
+    def memory(self) -> float:
+        """Resident memory in megabytes."""
+        asked = ["ps", "-o", "rss=", "-p", str(self.pid)]
+        return int(subprocess.run(asked, capture_output=True, text=True, check=True).stdout) / 1024
+
+    def _answers(self) -> bool:
+        assert self._process is not None
+        if self._process.poll() is not None:
+            raise AssertionError("it ended")
+        try:
+            with urlopen(f"{self.url}/healthz", timeout=2) as answer:
+                return bool(answer.status == 200)
+        except (URLError, OSError):
+            return False
+
+
+class Host:
+    """The viser host that the rigs of a test run share, and what went wrong on its loop."""
+
+    def __init__(self) -> None:
+        self.viser = ViserHost()
+        self.problems: list[str] = []
+        self.viser.loop.call_soon_threadsafe(self.viser.loop.set_exception_handler, self._failed)
+        self.viser.server.on_client_connect(self._connected)
+
+    def call(self, work: Callable[[], T]) -> T:
+        """Run something on viser's event loop, where sessions live."""
+
+        async def run() -> T:
+            return work()
+
+        return self.wait(run())
+
+    def wait(self, work: Coroutine[Any, Any, T]) -> T:
+        """Run a coroutine on viser's event loop."""
+        return asyncio.run_coroutine_threadsafe(work, self.viser.loop).result(PATIENCE)
+
+    def _failed(self, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        self.problems.append(f"{context['message']}: {context.get('exception')!r}")
+
+    async def _connected(self, client: viser.ClientHandle) -> None:
+        self.viser.wire_of(client).context(client)
+
+
+@functools.cache
+def shared_host() -> Host:
+    """The one host of this process."""
+    return Host()
+
+
+class Browser:
+    """A simulated browser on a session: viser's client without pictures."""
+
+    def __init__(self, host: Host, session: Any, look: Look) -> None:
+        self.model = SceneModel()
+        self.sent = 0
+        self._host = host
+        self._session = session
+        self._labels = itertools.count()
+        arrived = threading.Event()
+        clients: list[viser.ClientHandle] = []
+
+        def connected(client: viser.ClientHandle) -> None:
+            clients.append(client)
+            arrived.set()
+
+        self.wire = Wire(self._receive, connected)
+        self._serving = asyncio.run_coroutine_threadsafe(host.viser.connect(self.wire), host.viser.loop)
+        self.send(camera_message())
+        assert arrived.wait(PATIENCE), "viser didn't take the connection"
+        self.client = clients[0]
+        self.viewer = host.call(lambda: self._show(look))
+        self.settle()
+
+    def _show(self, look: Look) -> Viewer:
+        session = self._session
+        viewer = Viewer(session.sim, self.client, session, look, session.params)
+        session.join(viewer)
+        return viewer
+
+    async def _receive(self, frame: bytes) -> None:
+        self.model.feed(frame)
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Send a message as viser's client would, through the check that the bridge makes."""
+        data = encode_message(message)
+        value_of = decoder.decode(data).value_of
+        self.sent += 1
+        self._host.call(lambda: self.wire.feed(data, value_of))
+
+    def settle(self) -> None:
+        """Wait until everything that viser has to send has arrived."""
+        mark = f"{next(self._labels)}"
+        self._host.call(lambda: self.client.gui.set_panel_label(mark))
+        self._host.call(self.client.flush)
+        latest = self.model.latest
+        wait_for(
+            lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send"
+        )
+
+    def control(self, field: str) -> GuiElement:
+        """The control of a parameter, or of a button, by the parameter's or action's name or its label."""
+        session = self._session
+        if field in type(session.params).model_fields:
+            title = session.params.label(field)
+        else:
+            title = next((a.label for a in session.sim.actions if a.name == field), field)
+        return self.model.control(title)
+
+    def move(self, field: str, value: Any) -> None:
+        """Set a control of the panel, as a hand on it would: it shows the value at once, then tells viser."""
+        control = self.control(field)
+        control.value = value
+        self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": value}})
+
+    def press(self, action: str) -> None:
+        """Press a button."""
+        control = self.control(action)
+        self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": True}})
+
+    def drag(self, name: str, *places: tuple[float, float, float], modifier: str | None = None) -> None:
+        """Take a node at its middle, lead it through places in the world, and let go."""
+        grabbed = tuple(self.model.world_pose(name)[:3, 3].tolist())
+        path = [("start", grabbed), *(("update", place) for place in places), ("end", places[-1])]
+        for phase, place in path:
+            self.send(
+                {
+                    "type": "SceneNodeDragMessage",
+                    "phase": phase,
+                    "name": name,
+                    "instance_index": None,
+                    "start_position": grabbed,
+                    "start_screen_pos": (0.5, 0.5),
+                    "end_position": place,
+                    "end_screen_pos": (0.5, 0.5),
+                    "button": "left",
+                    "modifier": modifier,
+                    "owner": self.model.node(name).owner,
+                }
+            )
+
+    def leave(self) -> None:
+        """Close the page."""
+        self._host.call(lambda: self._session.leave(viewer=self.viewer))
+        self._host.call(self.wire.hang_up)
+        self._serving.result(PATIENCE)
+
+
+class Rig:
+    """A session of a sim with one browser on it (and more, with `join`)."""
+
+    def __init__(self, sim: Sim[Any, Any], params: Params | None = None, look: Look | None = None) -> None:
+        self.host = shared_host()
+        self._log = _Recorder()
+        logging.getLogger("sim3").addHandler(self._log)
+        self._sessions = Sessions(8)
+        start = sim.params() if params is None else params
+        self.session = self.host.call(lambda: self._sessions.open(sim, "room", start))
+        self.browsers: list[Browser] = []
+        self.browser = self.join(look)
+
+    @property
+    def model(self) -> SceneModel:
+        """What the first browser shows."""
+        return self.browser.model
+
+    def join(self, look: Look | None = None) -> Browser:
+        """Another browser looks at the session."""
+        browser = Browser(self.host, self.session, look or Look())
+        self.browsers.append(browser)
+        return browser
+
+    def change(self, **changes: Any) -> None:
+        """Change the state as a control would."""
+        self.host.call(lambda: self.session.change(changes))
+
+    def show(self, params: Params) -> None:
+        """Change the whole state, and wait until everybody sees it."""
+        self.host.call(lambda: self.session.change(params.__dict__, live=False))
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until the session has drawn its newest state and every browser shows it."""
+        self.host.wait(self._drawn())
+        for browser in self.browsers:
+            browser.settle()
+
+    async def _drawn(self) -> None:
+        await asyncio.sleep(0.001)  # what browsers sent goes through viser's tasks first
+        while (drawing := self.session._drawing) is not None:
+            await asyncio.wait([drawing], timeout=PATIENCE)
+
+    def close(self) -> None:
+        """Everybody leaves."""
+        for browser in self.browsers:
+            browser.leave()
+        self._sessions.close()
+        logging.getLogger("sim3").removeHandler(self._log)
+
+    def problems(self) -> list[str]:
+        """What went wrong unseen: errors logged, tasks that failed, updates of things that don't exist."""
+        strays = [stray for browser in self.browsers for stray in browser.model.strays]
+        return [*self._log.said, *self.host.problems, *strays]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+        if kind is None and (problems := self.problems()):
+            raise AssertionError("went wrong unseen: " + "; ".join(problems))
+
+
+class _Recorder(logging.Handler):
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.said: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.said.append(logging.Formatter().format(record))
+
+
+def camera_message(position: tuple[float, float, float] = (3.0, -3.0, 2.0)) -> dict[str, Any]:
+    """What viser's client sends first, and whenever the view moves."""
+    return {
+        "type": "ViewerCameraMessage",
+        "wxyz": (1.0, 0.0, 0.0, 0.0),
+        "position": position,
+        "fov": 0.9,
+        "near": 0.01,
+        "far": 1000.0,
+        "image_height": 600,
+        "image_width": 700,
+        "look_at": (0.0, 0.0, 0.0),
+        "up_direction": (0.0, 0.0, 1.0),
+    }
