@@ -14,7 +14,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 from urllib.parse import parse_qsl, urlsplit
 
 import msgspec
@@ -129,7 +129,7 @@ class Bridge:
         self._visits: dict[str, Visit] = {}
         host.server.on_client_connect(self._on_connect)
 
-    async def viser(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
+    async def scene(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
         """viser's websocket: check each message and hand it on, until the page goes."""
         if not self._same_origin(ws) or PROTOCOL not in ws.scope.get("subprotocols", ()):
             await self._refuse(ws, "origin" if not self._same_origin(ws) else "protocol")
@@ -314,7 +314,12 @@ class Bridge:
         except ValidationError as error:
             answer({"type": "error", "message": refusal(error)})
         except KeyError as error:
-            answer({"type": "error", "message": f"no such action, handle or parameter: {str(error.args[0])[:80]}"})
+            answer(
+                {
+                    "type": "error",
+                    "message": f"no such action, handle or parameter: {str(error.args[0])[:80]}",
+                }
+            )
 
     def _visit(self, ws: WebSocket, sim: Sim[Any, Any], room: str, watching: bool) -> Visit:
         """The visit that this socket belongs to; the first of its two sockets begins it."""

@@ -28,9 +28,7 @@ def between(a: Any, b: Any, fraction: float) -> Any:
     return a + (b - a) * fraction
 
 
-async def play(
-    steps: Iterator[Step], now: Callable[[], Params], *, reduced: bool
-) -> AsyncIterator[Mapping[str, Any]]:
+async def play(steps: Iterator[Step], now: Callable[[], Params], *, reduced: bool) -> AsyncIterator[Mapping[str, Any]]:
     """Yield changes frame by frame; under reduced motion only each step's end, with a pause."""
     loop = asyncio.get_running_loop()
     for step in steps:

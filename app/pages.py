@@ -15,8 +15,7 @@ from fastapi.responses import HTMLResponse, Response
 from starlette.templating import Jinja2Templates
 
 from app.settings import ROOT
-from sims import by_slug
-from sims import SIMS
+from sims import SIMS, by_slug
 from sims.kit.params import Complaint
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import client_page
@@ -51,7 +50,12 @@ def _static(prefix: str, name: str) -> str:
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
     """An HTML page from a template."""
-    shared = {"base": base(request), "static": functools.partial(static, request), "sims": SIMS, "status": status}
+    shared = {
+        "base": base(request),
+        "static": functools.partial(static, request),
+        "sims": SIMS,
+        "status": status,
+    }
     return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
 
 

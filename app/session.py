@@ -38,7 +38,7 @@ class Session:
     def __init__(self, sim: Sim[Any, Any], room: str, params: Params, pool: ThreadPoolExecutor) -> None:
         self.sim = sim
         self.room = room
-        self.params = self.initial = params
+        self.params = self.initial = self._solved = params
         self.solution: Any = sim.solve(params)
         self.viewers: set[Viewer] = set()
         self.listeners: set[Callable[[dict[str, Any]], None]] = set()
@@ -58,6 +58,7 @@ class Session:
         Raises pydantic's ValidationError for values that are refused; the state stays.
         """
         self.stop_motion()
+        self.redraw()  # also where nothing changes: a control that was moved too far goes back
         self._set(self.params.moved(changes) if live else self.params.changed(changes))
 
     def drag(self, name: str, place: tuple[float, ...]) -> None:
@@ -113,11 +114,13 @@ class Session:
                 params = self.params
                 try:
                     self.solution = await self._solve(params)
+                    self._solved = params
                 except GeometryError as error:
                     self._tell({"type": "error", "message": str(error)})
-                    continue
+                    if self.params is params:
+                        self.params = self._solved
                 for viewer in list(self.viewers):
-                    viewer.draw(params, self.solution)
+                    viewer.draw(self._solved, self.solution)
                 self._tell_state_soon()
         except Exception:
             log.exception("drawing %s failed", self.sim.slug)
@@ -133,7 +136,7 @@ class Session:
         """The state message for pages."""
         return {
             "type": "state", "version": self.version, "params": self.params.model_dump(mode="json"),
-            "query": self.params.query(), "text": self.sim.describe(self.params, self.solution),
+            "query": self.params.query(), "text": self.sim.describe(self._solved, self.solution),
         }  # fmt: skip
 
     def _tell(self, message: dict[str, Any]) -> None:
@@ -154,12 +157,12 @@ class Session:
     def join(self, viewer: Viewer) -> None:
         """Add a viewer and show it the present state."""
         self.viewers.add(viewer)
-        viewer.draw(self.params, self.solution)
+        viewer.draw(self._solved, self.solution)
 
     def leave(self, viewer: Viewer | None = None, listener: Callable[[dict[str, Any]], None] | None = None) -> None:
         """Forget a viewer or a channel."""
-        self.viewers.discard(viewer)  # type: ignore[arg-type]
-        self.listeners.discard(listener)  # type: ignore[arg-type]
+        self.viewers.discard(viewer)
+        self.listeners.discard(listener)
         if not self.viewers and not self.listeners:
             self.left_at = time.monotonic()
             self.stop_motion()

@@ -84,7 +84,7 @@ def _params(sim: AnySim, request: Request) -> Params:
     wrong = pages.bad_options(options)
     kept = {name: text for name, text in options.items() if name not in {w[0] for w in wrong}}
     try:
-        params = sim.params.from_query(items)
+        params: Params = sim.params.from_query(items)
     except BadParams as error:
         raise BadParams([*error.complaints, *wrong], {**error.good, **kept}) from None
     if wrong:
@@ -134,7 +134,9 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
     @app.get("/sims/{slug}/s/{room}", include_in_schema=False)
     async def slash(request: Request) -> Response:
         query = f"?{request.url.query}" if request.url.query else ""
-        return RedirectResponse(f"{pages.base(request)}{request.scope['path'].removeprefix(request.scope.get('root_path', ''))}/{query}")
+        return RedirectResponse(
+            f"{pages.base(request)}{request.scope['path'].removeprefix(request.scope.get('root_path', ''))}/{query}"
+        )
 
 
 def _add_api(app: FastAPI) -> None:
@@ -191,12 +193,12 @@ def _add_sockets(app: FastAPI, bridge: Bridge) -> None:
     @app.websocket("/sims/{slug}/s/{room}")
     @app.websocket("/sims/{slug}/s/{room}/")
     async def watch(ws: WebSocket, slug: str, room: str) -> None:
-        await enter(ws, slug, room, None, "viser")
+        await enter(ws, slug, room, None, "scene")
 
     @app.websocket("/sims/{slug}/s/{room}/{key}")
     @app.websocket("/sims/{slug}/s/{room}/{key}/")
     async def control(ws: WebSocket, slug: str, room: str, key: str) -> None:
-        await enter(ws, slug, room, key, "viser")
+        await enter(ws, slug, room, key, "scene")
 
 
 def _add_errors(app: FastAPI) -> None:
@@ -204,7 +206,12 @@ def _add_errors(app: FastAPI) -> None:
     async def bad_params(request: Request, error: BadParams) -> Response:
         sim = by_slug(request.path_params.get("slug", ""))
         return pages.render(
-            request, "bad_params.html", status=422, sim=sim, complaints=error.complaints, good=urlencode(error.good, safe=",-.:")
+            request,
+            "bad_params.html",
+            status=422,
+            sim=sim,
+            complaints=error.complaints,
+            good=urlencode(error.good, safe=",-.:"),
         )
 
     @app.exception_handler(RequestValidationError)

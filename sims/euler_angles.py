@@ -44,10 +44,44 @@ class EulerParams(Params):
         "intrinsic", title="Frame", description="Turns about the aircraft's own axes, or about the world's",
         labels={"intrinsic": "Intrinsic: own axes", "extrinsic": "Extrinsic: fixed axes"},
     )  # fmt: skip
-    yaw: float = number(30, -180, 180, step=1, unit="°", title="Yaw", symbol="ψ", description="Angle about Z; first angle of a proper Euler order")
-    pitch: float = number(20, -90, 180, step=1, unit="°", title="Pitch", symbol="θ", description="Angle about Y; second angle of a proper Euler order")
-    roll: float = number(10, -180, 180, step=1, unit="°", title="Roll", symbol="φ", description="Angle about X; third angle of a proper Euler order")
-    progress: float = number(3, 0, 3, step=0.01, title="Progress", description="How much of the sequence is applied: 1 is the first turn, 3 all of it")
+    yaw: float = number(
+        30,
+        -180,
+        180,
+        step=1,
+        unit="°",
+        title="Yaw",
+        symbol="ψ",
+        description="Angle about Z; first angle of a proper Euler order",
+    )
+    pitch: float = number(
+        20,
+        -90,
+        180,
+        step=1,
+        unit="°",
+        title="Pitch",
+        symbol="θ",
+        description="Angle about Y; second angle of a proper Euler order",
+    )
+    roll: float = number(
+        10,
+        -180,
+        180,
+        step=1,
+        unit="°",
+        title="Roll",
+        symbol="φ",
+        description="Angle about X; third angle of a proper Euler order",
+    )
+    progress: float = number(
+        3,
+        0,
+        3,
+        step=0.01,
+        title="Progress",
+        description="How much of the sequence is applied: 1 is the first turn, 3 all of it",
+    )
 
     @property
     def proper(self) -> bool:
@@ -253,7 +287,13 @@ class Arc:
         for part in (self.line, self.start, self.end, self.label):
             part.show(visible)
         self.axis.show(turn.current)
-        self.label.pose(position=(1.1 * self.radius * math.cos(radians / 2), 1.1 * self.radius * math.sin(radians / 2), 0.0))
+        self.label.pose(
+            position=(
+                1.1 * self.radius * math.cos(radians / 2),
+                1.1 * self.radius * math.sin(radians / 2),
+                0.0,
+            )
+        )
         self.label.text(f"{turn.name} {quantity(turn.applied, '°', 0)}")
         if self.warning is not None:
             lock = math.radians(min(self.locks, key=lambda v: abs(v - turn.applied)))
@@ -269,15 +309,22 @@ def readouts(p: EulerParams, s: EulerSolution) -> Iterator[Readout]:
     if s.locked:
         yield Note(f"Gimbal lock: the first and third axes coincide. Only {_sum(p)} matters.", "warn")
     elif s.lock_distance < NEAR_LOCK:
-        yield Note(f"{quantity(s.lock_distance, '°', 1)} from gimbal lock: first and third axes almost coincide.", "near")
+        yield Note(
+            f"{quantity(s.lock_distance, '°', 1)} from gimbal lock: first and third axes almost coincide.",
+            "near",
+        )
     else:
         yield Note(f"{quantity(s.lock_distance, '°', 1)} from gimbal lock.")
     names = " ".join(f"R{f['axis']}({quantity(f['angle'], '°', 0)})" for f in s.factors)
     yield Formula(f"Rotation: {names}", symbol("R"), mathml(s.R))
     for factor in s.factors:
-        yield Formula(f"Turn about {factor['axis']} by {quantity(factor['angle'], '°', 1)}", symbol("R", factor["axis"]), mathml(factor["R"]))
-    yield Formula("Quaternion (w, x, y, z)", symbol("q"), row(s.quaternion))
-    yield Formula("Axis", symbol("n"), row(s.axis_angle["axis"]))
+        yield Formula(
+            f"Turn about {factor['axis']} by {quantity(factor['angle'], '°', 1)}",
+            symbol("R", factor["axis"]),
+            mathml(factor["R"]),
+        )
+    yield Formula("Quaternion (w, x, y, z)", symbol("q"), row(s.quaternion.tolist()))
+    yield Formula("Axis", symbol("n"), row(s.axis_angle["axis"].tolist()))
     yield Formula("Angle about it", symbol("θ"), mathml(s.axis_angle["angle"], 2), "°")
     got = ", ".join(f"{n} {quantity(a, '°', 2)}" for n, a in s.recovered.items())
     zero = " (at lock the third is set to zero)" if s.locked else ""
@@ -309,11 +356,14 @@ def animate(p: EulerParams) -> Iterator[Step]:
 SIM = Sim(
     slug="euler-angles",
     title="Euler angles",
-    summary="Turn an aircraft three times, see each turn in the frame it happens in, and read the one rotation they make.",
+    summary="Turn an aircraft three times, see each turn in its own frame, and read the one rotation they make.",
     concepts=("Euler Angles", "Gimbal Lock"),
     objectives=(
         Objective("Predict the orientation that three turns in a given order produce", "Apply"),
-        Objective("Tell intrinsic from extrinsic turns, and order the matrices of the product accordingly", "Analyze"),
+        Objective(
+            "Tell intrinsic from extrinsic turns, and order the matrices of the product accordingly",
+            "Analyze",
+        ),
         Objective("Find the middle angle at which an order locks, and say what is lost there", "Analyze"),
     ),
     params=EulerParams,

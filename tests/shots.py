@@ -105,7 +105,7 @@ def opened(
 def wait_live(page: Page) -> None:
     """Wait until every sim on the page, itself or in a frame, is drawn."""
     for frame in page.frames:
-        if "/s/" in frame.url or "/embed" in frame.url:
+        if "/s/" in frame.url:
             frame.wait_for_function("window.sim3?.live === true", timeout=PATIENCE)
             frame.wait_for_selector(".s3-still", state="detached", timeout=PATIENCE)
             frame.wait_for_selector(".mantine-Notification-root", state="detached", timeout=PATIENCE)
@@ -113,10 +113,10 @@ def wait_live(page: Page) -> None:
 
 
 def settled(page: Page) -> None:
-    """Wait until two pictures in a row are the same."""
-    before = page.screenshot()
+    """Wait until two pictures in a row are the same: viser draws what has arrived, and goes on loading labels."""
+    before = b""
     for _ in range(20):
-        page.wait_for_timeout(300)
+        page.wait_for_timeout(600)
         after = page.screenshot()
         if after == before:
             return

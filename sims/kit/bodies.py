@@ -10,14 +10,22 @@ from trimesh.creation import box, cone, cylinder, icosphere
 
 
 def _moved(mesh: trimesh.Trimesh, offset: tuple[float, float, float]) -> trimesh.Trimesh:
-    return mesh.apply_translation(offset)
+    mesh.apply_translation(offset)
+    return mesh
+
+
+def _joined(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    whole = trimesh.util.concatenate(parts)
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
 
 
 def _slab(outline: list[tuple[float, float]], thickness: float) -> trimesh.Trimesh:
     """A flat convex plate: outline (x, y), centred on z = 0."""
     flat = np.array(outline)
     corners = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (-thickness / 2, thickness / 2)])
-    return trimesh.convex.convex_hull(corners)
+    hull: trimesh.Trimesh = trimesh.convex.convex_hull(corners)
+    return hull
 
 
 @lru_cache(maxsize=1)
@@ -34,15 +42,15 @@ def aircraft() -> dict[str, trimesh.Trimesh]:
     fin = _slab([(-0.52, 0.0), (-0.78, 0.36), (-0.9, 0.36), (-0.86, 0.0)], 0.03)
     fin.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
     mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
-    hull = trimesh.util.concatenate([fuselage, nose, canopy, left, right, tail, fin])
+    hull = _joined([fuselage, nose, canopy, left, right, tail, fin])
     return {"hull": hull, "mark": mark}
 
 
 @lru_cache(maxsize=1)
 def camera() -> dict[str, trimesh.Trimesh]:
-    """A camera about 0.3 long that looks along +Z with y down: `body` and `lens`; its centre of projection is the origin."""
+    """A camera about 0.3 long that looks along +Z with y down, its centre of projection at the origin: `body`, `lens`."""
     body = _moved(box((0.24, 0.16, 0.16)), (0.0, 0.0, -0.12))
     bump = _moved(box((0.1, 0.05, 0.09)), (0.0, -0.1, -0.12))
     barrel = _moved(cylinder(radius=0.062, height=0.1, sections=32), (0.0, 0.0, 0.0))
     rim = _moved(cylinder(radius=0.07, height=0.02, sections=32), (0.0, 0.0, 0.05))
-    return {"body": trimesh.util.concatenate([body, bump]), "lens": trimesh.util.concatenate([barrel, rim])}
+    return {"body": _joined([body, bump]), "lens": _joined([barrel, rim])}

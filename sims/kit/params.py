@@ -100,7 +100,7 @@ class Params(BaseModel):
         try:
             return cls.model_validate(values), {}
         except ValidationError as error:
-            return None, {field: allowed for field, allowed in _complaints(cls, error)}
+            return None, dict(_complaints(cls, error))
 
 
 class Complaint(tuple[str, str, str]):
@@ -116,12 +116,23 @@ class BadParams(ValueError):
     def __init__(self, complaints: list[Complaint], good: dict[str, str]) -> None:
         self.complaints = complaints
         self.good = good
-        super().__init__("; ".join(f"{name}: got {received!r}, allowed: {allowed}" for name, received, allowed in complaints))
+        super().__init__(
+            "; ".join(f"{name}: got {received!r}, allowed: {allowed}" for name, received, allowed in complaints)
+        )
 
 
 def number(
-    default: float, low: float, high: float, *, title: str, description: str, step: float, unit: str = "",
-    symbol: str = "", group: str = "", control: str = "slider",
+    default: float,
+    low: float,
+    high: float,
+    *,
+    title: str,
+    description: str,
+    step: float,
+    unit: str = "",
+    symbol: str = "",
+    group: str = "",
+    control: str = "slider",
 ) -> Any:
     """A number with bounds (inclusive) in `unit`. `control`: slider, number or none."""
     return Field(
@@ -140,14 +151,20 @@ def choice(default: str, *, title: str, description: str, labels: Mapping[str, s
 
 def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:
     """On or off; 1 or 0 in a link."""
-    return Field(
-        default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"}
-    )
+    return Field(default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"})
 
 
 def vector(
-    default: tuple[float, ...], low: float, high: float, *, title: str, description: str, step: float,
-    unit: str = "", group: str = "", control: str = "vector",
+    default: tuple[float, ...],
+    low: float,
+    high: float,
+    *,
+    title: str,
+    description: str,
+    step: float,
+    unit: str = "",
+    group: str = "",
+    control: str = "vector",
 ) -> Any:
     """Two or three numbers that belong together, each from `low` to `high`; `1,0.5,2` in a link."""
     return Field(
@@ -205,7 +222,7 @@ def spell(value: Any) -> str:
         return "1" if value else "0"
     if isinstance(value, tuple):
         return ",".join(spell(v) for v in value)
-    return value if isinstance(value, str) else plain(value)
+    return str(value) if isinstance(value, str) else plain(value)
 
 
 def plain(value: float) -> str:

@@ -8,22 +8,24 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from sims.kit.pane import Pane
 from sims.kit.palette import Palette
+from sims.kit.pane import Pane
 from sims.kit.params import Params
 from sims.kit.readout import Readout
 from sims.kit.stage import Stage
 
 P = TypeVar("P", bound=Params)
 S = TypeVar("S")
+P_in = TypeVar("P_in", bound=Params, contravariant=True)
+S_in = TypeVar("S_in", contravariant=True)
 
 
-class Scene(Protocol[P, S]):
+class Scene(Protocol[P_in, S_in]):
     """Viser nodes, built once for one viewer; `draw` assigns what follows from the state."""
 
     def __init__(self, stage: Stage) -> None: ...
 
-    def draw(self, params: P, solution: S) -> None: ...
+    def draw(self, params: P_in, solution: S_in) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ class Sim(Generic[P, S]):
     view: View
     actions: Sequence[Action[P]] = ()
     panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
-    handles: Mapping[str, Callable[[P, tuple[float, float]], Mapping[str, Any]]] = field(default_factory=dict)
+    handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     heavy: bool = False
     """Solving can take over 5 ms: it runs in the pool, beside the event loop."""

@@ -17,7 +17,7 @@ import trimesh
 import viser
 
 from sims.kit.palette import AXES, Palette
-from sims.kit.viser_internals import set_pose, set_property, set_visible
+from sims.kit.viser_internals import send_pose, set_pose, set_property, set_visible
 
 Vector = Sequence[float] | npt.NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
@@ -38,6 +38,7 @@ class Node:
 
     def __init__(self, handle: Any) -> None:
         self.handle = handle
+        send_pose(handle)
 
     def pose(self, wxyz: Sequence[float] | None = None, position: Vector | None = None) -> None:
         set_pose(
@@ -99,9 +100,7 @@ class Arrow(Node):
 ARC_PIECES = 48
 
 
-def arc_pieces(
-    radius: float, angle: float, start: float, dash: tuple[float, float] | None
-) -> npt.NDArray[np.float64]:
+def arc_pieces(radius: float, angle: float, start: float, dash: tuple[float, float] | None) -> npt.NDArray[np.float64]:
     """An arc in the xy plane as pieces (n, 2, 3); dashes (metres along it) keep their length."""
     length = abs(angle) * radius
     count = ARC_PIECES if dash is None else max(int(length / sum(dash)) + 1, 1)
@@ -202,7 +201,9 @@ class Stage:
         )  # fmt: skip
         return Arrow(handle)
 
-    def label(self, name: str, text: str, position: Vector = (0.0, 0.0, 0.0), *, anchor: Any = "center-center") -> Label:
+    def label(
+        self, name: str, text: str, position: Vector = (0.0, 0.0, 0.0), *, anchor: Any = "center-center"
+    ) -> Label:
         """Words in the scene."""
         handle = self.scene.add_label(name, text, position=_triple(position), anchor=anchor, font_screen_scale=1.15)
         return Label(handle)
@@ -241,7 +242,9 @@ class Stage:
         It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
         """
         ball = self.ball(name, radius, role)
-        ring = trimesh.creation.torus(major_radius=1.7 * radius, minor_radius=0.12 * radius, major_sections=48, minor_sections=8)
+        ring = trimesh.creation.torus(
+            major_radius=1.7 * radius, minor_radius=0.12 * radius, major_sections=48, minor_sections=8
+        )
         for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])]):
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
         self._listen(ball.handle, name)

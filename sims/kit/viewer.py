@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -161,12 +162,12 @@ class Viewer:
         if hints["control"] == "choice":
             labels = {word: hints["labels"][word] for word in choices(field)}
             words = {shown: word for word, shown in labels.items()}
-            from_control, to_control = words.__getitem__, labels.__getitem__
+            from_control, to_control = words.get, labels.__getitem__
             handle = gui.add_dropdown(label, tuple(words), initial_value=labels[value], **shared)
         elif hints["control"] == "switch":
             handle = gui.add_checkbox(label, value, **shared)
         elif isinstance(field.default, tuple):
-            add = gui.add_vector2 if len(field.default) == 2 else gui.add_vector3
+            add: Any = gui.add_vector2 if len(field.default) == 2 else gui.add_vector3
             low, high = field_bounds(field)
             ends = {"min": (low,) * len(value), "max": (high,) * len(value)}
             handle = add(label, value, step=hints["step"], **ends, **shared)
@@ -177,9 +178,10 @@ class Viewer:
             bounds = params.bounds(name)
             handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
 
-        @handle.on_update
+        @handle.on_update  # type: ignore[untyped-decorator]
         async def _(_: Any) -> None:
-            self._host.change({name: from_control(handle.value)})
+            with suppress(ValueError):  # a value that can't be; the session shows the last good one
+                self._host.change({name: from_control(handle.value)})
 
         return Control(name, handle, to_control, label, bounds)
 

@@ -130,6 +130,19 @@ def set_pose(
         impl.api._queue_scene_message(_messages.SetPositionMessage(impl.name, position))
 
 
+def send_pose(node: viser.SceneNodeHandle) -> None:
+    """Send a node's pose even where it is the default.
+
+    A node that is made again under a name that was removed a moment before reaches the browser as one message,
+    and the browser keeps the old node's pose.
+    """
+    impl = node._impl
+    w, x, y, z = impl.wxyz.tolist()
+    impl.api._queue_scene_message(_messages.SetOrientationMessage(impl.name, (w, x, y, z)))
+    x, y, z = impl.position.tolist()
+    impl.api._queue_scene_message(_messages.SetPositionMessage(impl.name, (x, y, z)))
+
+
 def set_value(control: Any, value: Any) -> None:
     """Show a value in a control without calling its callbacks."""
     impl = control._impl

@@ -1,0 +1,54 @@
+"""What other people's pages rely on: names of parameters and solution fields, and a link per sim.
+
+A name may be added; one that stands here may not go or change (a renamed parameter keeps the old name as an alias).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+PARAMETERS: dict[str, str] = {
+    "coordinate-frames": "convention to handedness point w grid_xy grid_xz grid_yz show_rule",
+    "euler-angles": "order frame yaw pitch roll progress",
+    "gimbal-lock": "yaw pitch roll",
+    "quaternion": "axis angle start t interpolation long_way show_euler point",
+    "transform-chain": "angles lengths axes show swap",
+    "camera": "fx fy cx cy skew position pan tilt roll projection show_rays show_frustum",
+    "epipolar": "left right left_pan right_pan focal point points show_plane show_all_lines pick",
+    "triangulation": "baseline focal left_uv right_uv noise seed method",
+    "point-cloud": "dataset color point_size voxel_size show_normals neighbors show_box selected process step",
+}
+
+SOLUTION: dict[str, str] = {
+    "coordinate-frames": "basis handedness point_world coordinates matrix determinant homogeneous cartesian",
+    "euler-angles": "R factors quaternion axis_angle lock_distance locked",
+    "gimbal-lock": "R axes singular_values dof lost_axis conditioning",
+    "quaternion": "q q_total R_total euler rotated_point interpolated sandwich",
+    "transform-chain": "individual composed end_effector inverse positions swapped_end_effector",
+    "camera": "K R t P center fov_x fov_y points",
+    "epipolar": "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"
+    " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson",
+    "triangulation": "point by_method ray_gap closest_points disparity depth_from_disparity covariance"
+    " ellipsoid_axes parallax_angle in_front",
+    "point-cloud": "points_in points_out minimum maximum dimensions selected",
+}
+
+# One link per sim as it stands in course pages, and what it has always meant.
+GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
+    "euler-angles": (
+        "order=zxz&frame=extrinsic&yaw=-120.5&pitch=90&roll=45&progress=1.5",
+        {"order": "zxz", "frame": "extrinsic", "yaw": -120.5, "pitch": 90.0, "roll": 45.0, "progress": 1.5},
+    ),
+    "triangulation": (
+        "baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
+        {
+            "baseline": 1.2,
+            "focal": 800.0,
+            "left_uv": [400.0, 200.0],
+            "right_uv": [300.0, 201.5],
+            "noise": 0.5,
+            "seed": 7,
+            "method": "optimal",
+        },
+    ),
+}

@@ -1,0 +1,348 @@
+"""Every sim of the registry, at its defaults, its bounds, its choices and its named states."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import parse_qsl
+
+import numpy as np
+import pytest
+
+from sims import SIMS, by_slug
+from sims.kit import pane, readout
+from sims.kit.palette import DARK, LIGHT
+from sims.kit.params import Params, choices, extra, field_bounds, numeric_fields
+from sims.kit.sim import Sim, jsonable
+from sims.kit.viewer import Look
+from tests.frames import differences
+from tests.server import Rig
+from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
+from tests.sims.contract import GOLDEN, PARAMETERS, SOLUTION
+from tests.sims.markup import bad_attributes, bad_numbers, mistakes, words, xml
+
+AnySim = Sim[Any, Any]
+MOST_LABELS = 7
+each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
+each_state = pytest.mark.parametrize(("sim", "name", "params"), ALL, ids=NAMES)
+few_states = pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
+
+
+@pytest.fixture(scope="module")
+def rigs() -> Iterator[dict[str, Rig]]:
+    """A session of each sim with one browser, which the tests lead from state to state."""
+    made = {sim.slug: Rig(sim) for sim in SIMS}
+    yield made
+    for rig in made.values():
+        rig.close()
+        assert not rig.problems()
+
+
+def parse(sim: AnySim, query: str) -> Params:
+    params: Params = sim.params.from_query(parse_qsl(query, keep_blank_values=True))
+    return params
+
+
+# ---- parameters and links
+
+
+@each_sim
+def test_parameters_keep_the_names_of_the_contract(sim: AnySim) -> None:
+    known = {*sim.params.model_fields, *(f.alias for f in sim.params.model_fields.values() if f.alias)}
+    assert set(PARAMETERS[sim.slug].split()) <= known
+
+
+@each_sim
+def test_golden_link_keeps_its_meaning(sim: AnySim) -> None:
+    link, meaning = GOLDEN[sim.slug]
+    params = parse(sim, link)
+    assert params.model_dump(mode="json") | meaning == params.model_dump(mode="json")
+
+
+@each_state
+def test_link_of_a_state_leads_back_to_it(sim: AnySim, name: str, params: Params) -> None:
+    assert parse(sim, params.query()) == params
+    assert sim.params.model_validate(params.model_dump(mode="json")) == params
+    assert sim.params.model_validate_json(params.model_dump_json()) == params
+
+
+@each_sim
+def test_defaults_are_left_out_of_the_link(sim: AnySim) -> None:
+    assert sim.params().query() == ""
+
+
+@each_sim
+def test_every_parameter_is_described_for_people(sim: AnySim) -> None:
+    for name, field in sim.params.model_fields.items():
+        assert field.title, name
+        assert field.description, name
+        assert field.description[0].isupper(), name
+        assert not field.description.endswith("."), name
+        if extra(field).get("control") == "choice":
+            assert set(extra(field)["labels"]) == set(choices(field)), name
+            assert all(word == word.lower() for word in choices(field)), name
+
+
+@each_sim
+def test_schema_says_bounds_and_words(sim: AnySim) -> None:
+    properties = sim.params.model_json_schema()["properties"]
+    for name in numeric_fields(sim.params):
+        low, high = field_bounds(sim.params.model_fields[name])
+        told = json.dumps(properties[name])
+        assert f"{low}" in told, name
+        assert f"{high}" in told, name
+    for name, field in sim.params.model_fields.items():
+        if words := choices(field):
+            assert list(words) == properties[name]["enum"]
+
+
+@each_sim
+def test_slug_finds_the_sim(sim: AnySim) -> None:
+    assert by_slug(sim.slug) is sim
+    assert by_slug(sim.slug.upper()) is None
+
+
+# ---- the mathematics as others get it
+
+
+@each_state
+def test_solution_is_finite_json_with_the_fields_of_the_contract(
+    sim: AnySim, name: str, params: Params
+) -> None:
+    solution = jsonable(sim.solve(params))
+    assert set(SOLUTION[sim.slug].split()) <= set(solution)
+    text = json.dumps(solution, allow_nan=False)
+    assert "-0.0," not in text, "a negative zero goes out"
+
+
+@each_state
+def test_solving_is_a_function_of_the_parameters(sim: AnySim, name: str, params: Params) -> None:
+    again = params.model_copy()
+    assert jsonable(sim.solve(params)) == jsonable(sim.solve(again))
+
+
+@each_state
+def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params: Params) -> None:
+    html = readout.render(sim.readouts(params, sim.solve(params)))
+    assert not bad_numbers(words(html))
+    assert not bad_attributes(html)
+    assert not mistakes(html)
+
+
+@each_state
+def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> None:
+    solution = sim.solve(params)
+    for palette in (LIGHT, DARK):
+        shown = sim.panes(params, solution, palette) if sim.panes else ()
+        assert len({p.name for p in shown}) == len(shown)
+        html = pane.render(shown, palette.style())
+        assert not bad_numbers(words(html))
+        assert not bad_attributes(html)
+        assert not mistakes(html)
+        handles = {e.get("data-handle") for e in xml(html).iter() if e.get("data-handle")}
+        assert handles <= set(sim.handles), "a handle that the session doesn't know"
+
+
+@each_state
+def test_a_sentence_describes_the_state(sim: AnySim, name: str, params: Params) -> None:
+    sentence = sim.describe(params, sim.solve(params))
+    assert sentence.endswith(".")
+    assert sentence[0].isupper() or sentence[0].isdigit()
+    assert "  " not in sentence
+    assert len(sentence) <= 300
+    assert not bad_numbers(sentence)
+
+
+# ---- what browsers see
+
+
+@each_state
+def test_every_state_draws(
+    rigs: dict[str, Rig], sim: AnySim, name: str, params: Params
+) -> None:
+    rig = rigs[sim.slug]
+    rig.show(params)
+    model = rig.model
+    assert rig.session.params == params
+    assert not rig.problems()
+    html = model.html()
+    assert not mistakes(html)
+    assert readout.render(sim.readouts(params, sim.solve(params))) in html
+    named = [text for text in model.labels().values() if len(text.strip("′'")) > 1]
+    assert len(named) <= MOST_LABELS, named
+    assert not [bad for text in named for bad in bad_numbers(text)]
+    for node in filter(model.visible, model.names):
+        assert np.isfinite(model.world_pose(node)).all(), node
+        if {"points", "vertices"} & model.node(node).props.keys():
+            assert np.isfinite(model.points(node)).all(), node
+
+
+@few_states
+def test_scene_depends_on_the_state_alone(
+    rigs: dict[str, Rig], sim: AnySim, name: str, params: Params
+) -> None:
+    """A browser that saw all the states before shows what one that has just come shows."""
+    rig = rigs[sim.slug]
+    rig.show(params)
+    fresh = rig.join()
+    rig.browsers.remove(fresh)
+    fresh.leave()
+    assert not differences(rig.model.snapshot(), fresh.model.snapshot(), within=1e-12)
+
+
+@each_sim
+def test_going_away_and_back_restores_the_scene(rigs: dict[str, Rig], sim: AnySim) -> None:
+    rig = rigs[sim.slug]
+    rig.show(sim.params())
+    before = rig.model.snapshot()
+    before = {**before, **{k: {**v, "props": dict(v["props"])} for k, v in before.items()}}
+    for _, params in [(n, p) for s, n, p in FEW if s is sim]:
+        rig.show(params)
+        rig.show(sim.params())
+        assert not differences(before, rig.model.snapshot(), within=1e-12)
+
+
+@each_sim
+def test_everybody_in_a_room_sees_the_same(sim: AnySim) -> None:
+    with Rig(sim) as rig:
+        second = rig.join()
+        for _, params in [(n, p) for s, n, p in FEW if s is sim][::3]:
+            rig.show(params)
+            assert not differences(rig.model.snapshot(), second.model.snapshot(), within=0.0)
+
+
+@each_sim
+def test_dark_theme_and_watching_change_looks_alone(sim: AnySim) -> None:
+    with Rig(sim) as rig:
+        dark = rig.join(Look(dark=True, watching=True)).model
+        assert dark.names == rig.model.names
+        for name in dark.names:
+            assert np.array_equal(dark.world_pose(name), rig.model.world_pose(name)), name
+        inputs = [e for e in dark.gui.values() if "disabled" in e.props]
+        assert inputs
+        assert all(e.props["disabled"] for e in inputs)
+
+
+@each_sim
+def test_without_controls_there_is_the_scene_alone(sim: AnySim) -> None:
+    with Rig(sim, look=Look(controls=False)) as rig:
+        assert not [e for e in rig.model.gui.values() if e.props.get("label")]
+        assert rig.model.names
+
+
+# ---- what hands do
+
+
+def field_cases() -> list[tuple[AnySim, str]]:
+    return [
+        (sim, name)
+        for sim in SIMS
+        for name, field in sim.params.model_fields.items()
+        if extra(field).get("control", "none") != "none"
+    ]
+
+
+each_control = pytest.mark.parametrize(
+    ("sim", "name"), field_cases(), ids=[f"{s.slug}: {n}" for s, n in field_cases()]
+)
+
+
+def shown(params: Params, name: str) -> Any:
+    """What the control of a parameter should show."""
+    value, labels = getattr(params, name), extra(type(params).model_fields[name]).get("labels")
+    return labels[value] if labels else list(value) if isinstance(value, tuple) else value
+
+
+@each_control
+def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
+    rig = rigs[sim.slug]
+    rig.show(sim.params())
+    field = sim.params.model_fields[name]
+    start = getattr(rig.session.params, name)
+    if extra(field)["control"] == "choice":
+        aims = [word for word in choices(field) if word != start]
+    elif extra(field)["control"] == "switch":
+        aims = [not start]
+    else:
+        low, high = rig.session.params.bounds(name)
+        step = extra(field)["step"]
+        aims = [low, high, high - step]
+        aims = [tuple(a for _ in start) for a in aims] if isinstance(start, tuple) else aims
+    for aim in aims:
+        wanted = shown(rig.session.params.model_copy(update={name: aim}), name)
+        rig.browser.move(name, wanted)
+        rig.settle()
+        assert getattr(rig.session.params, name) == pytest.approx(aim)
+        control = rig.browser.control(name)
+        assert control.value == pytest.approx(wanted)
+
+
+@each_control
+def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
+    field = sim.params.model_fields[name]
+    if extra(field)["control"] in ("choice", "switch"):
+        return
+    rig = rigs[sim.slug]
+    rig.show(sim.params())
+    start = getattr(rig.session.params, name)
+    low, high = rig.session.params.bounds(name)
+    for beyond, bound in ((low - 1000, low), (high + 1000, high), (high + 2000, high)):
+        many = isinstance(start, tuple)
+        rig.browser.move(name, [beyond for _ in start] if many else beyond)
+        rig.settle()
+        wanted: Any = [bound for _ in start] if many else bound
+        assert shown(rig.session.params, name) == wanted
+        assert rig.browser.control(name).value == pytest.approx(wanted)
+
+
+@each_sim
+def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnySim) -> None:
+    rig = rigs[sim.slug]
+    for _, params in [(n, p) for s, n, p in FEW if s is sim]:
+        rig.show(params)
+        for name in [n for s, n in field_cases() if s is sim]:
+            control = rig.browser.control(name)
+            assert control.value == pytest.approx(shown(params, name)), name
+            if control.kind == "GuiSliderMessage":
+                assert control.bounds == params.bounds(name)
+
+
+@each_sim
+def test_every_action_ends_in_a_state(sim: AnySim) -> None:
+    for action in sim.actions:
+        with Rig(sim) as rig:
+            rig.session.reduced_motion = True
+            result = action.run(sim.params())
+            changes = [result] if hasattr(result, "keys") else [step.changes for step in result]
+            assert changes
+            state = sim.params()
+            for change in changes:
+                state = state.changed(change)
+            rig.browser.press(action.name)
+            rig.settle()
+            assert not rig.problems()
+
+
+@each_sim
+def test_reset_returns_to_the_first_state(sim: AnySim) -> None:
+    for _, params in [(n, p) for s, n, p in FEW if s is sim][:3]:
+        with Rig(sim, params) as rig:
+            before = rig.model.snapshot()
+            rig.show(sim.params().changed(next(iter(sim.states.values()))))
+            rig.browser.press("Reset")
+            rig.settle()
+            assert rig.session.params == params
+            assert not differences(before, rig.model.snapshot(), within=1e-12)
+
+
+@each_sim
+def test_what_can_be_dragged_is_known_and_moves(sim: AnySim) -> None:
+    with Rig(sim) as rig:
+        for name in rig.model.draggable():
+            assert name in sim.handles, f"{name} can be dragged and nothing happens"
+            before = rig.session.params
+            x, y, z = rig.model.world_pose(name)[:3, 3].tolist()
+            rig.browser.drag(name, (x + 0.05, y + 0.02, z + 0.03))
+            rig.settle()
+            assert rig.session.params != before, name
