@@ -241,10 +241,13 @@ class Bridge:
             session.listeners.add(listener)
             listener({**session.state(), "room": room, "watching": watching})
             code = await self._listen(ws, session, visit, listener)
-        except (WebSocketDisconnect, RuntimeError):
-            pass
         except Full:
+            self.refusals["full"] += 1
             code = 1013
+        except WebSocketDisconnect as end:
+            code = end.code
+        except RuntimeError:
+            pass
         finally:
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import logging
+import re
 import secrets
 import time
 from collections import Counter
@@ -120,12 +121,19 @@ class Session:
                     if self.params is params:
                         self.params = self._solved
                 for viewer in list(self.viewers):
-                    viewer.draw(self._solved, self.solution)
+                    self._show(viewer)
                 self._tell_state_soon()
         except Exception:
             log.exception("drawing %s failed", self.sim.slug)
         finally:
             self._drawing = None
+
+    def _show(self, viewer: Viewer) -> None:
+        """Draw for one viewer; what goes wrong there is no matter of the others."""
+        try:
+            viewer.draw(self._solved, self.solution)
+        except Exception:
+            log.exception("drawing %s for a viewer failed", self.sim.slug)
 
     async def _solve(self, params: Params) -> Any:
         if not self.sim.heavy:
@@ -224,6 +232,11 @@ def new_key() -> str:
 def room_of(key: str) -> str:
     """The room that a key controls."""
     return hashlib.sha256(key.encode()).hexdigest()[:20]
+
+
+def is_room(name: str) -> bool:
+    """Whether some key could control a room of that name."""
+    return re.fullmatch("[0-9a-f]{20}", name) is not None
 
 
 def refusal(error: ValidationError) -> str:

@@ -18,7 +18,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from app import pages
 from app.bridge import Bridge
 from app.security import Headers
-from app.session import Full, Sessions, new_key, room_of
+from app.session import Full, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
 from geometry import GeometryError
 from sims import SIMS, by_slug
@@ -41,9 +41,10 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         sessions.close()
 
     app = FastAPI(
-        title="Sim3", summary="Interactive 3D-geometry sims", version="1", root_path=settings.root_path,
-        lifespan=lifespan, redoc_url=None,
+        title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan, redoc_url=None,
     )  # fmt: skip
+    # uvicorn's own setting would put the prefix before every path, though not every proxy takes it away.
+    app.root_path = settings.root_path
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
@@ -122,12 +123,14 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
             session = sessions.open(sim, room, params)
         except Full:
             raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
-        if known and request.query_params:
+        if known and pages.split_options(request.query_params.multi_items())[0]:
             session.change(params.model_dump(), live=False)
         return pages.viewer(request, sim, watching=False)
 
     @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
     async def watched(request: Request, slug: str, room: str) -> Response:
+        if not is_room(room):
+            raise HTTPException(404, "There is no such room.")
         return pages.viewer(request, sim_or_404(slug), watching=True)
 
     @app.get("/sims/{slug}/s/{room}/{key}", include_in_schema=False)
@@ -176,7 +179,7 @@ def _add_solve(app: FastAPI, sim: AnySim) -> None:
 def _add_sockets(app: FastAPI, bridge: Bridge) -> None:
     async def enter(ws: WebSocket, slug: str, room: str, key: str | None, kind: str) -> None:
         sim = by_slug(slug)
-        if sim is None or (key is not None and room_of(key) != room) or len(room) > 40:
+        if sim is None or (key is not None and room_of(key) != room) or not is_room(room):
             bridge.refusals["address"] += 1
             await ws.close(1008)
             return

@@ -8,61 +8,30 @@ import math
 import secrets
 from collections.abc import Sequence
 from contextlib import AsyncExitStack, suppress
+from importlib.metadata import version
 from time import perf_counter
 from typing import Any
 
-import msgspec
-import viser
-import zstandard
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
+from tests.frames import Message, decode_frame, encode_message
+
+PROTOCOL = Subprotocol(f"viser-v{version('viser')}")
 SLIDER = "Yaw"
 TURNED = "/turn1"
 """The node whose orientation is the slider's angle about z, in both ways of writing the sim."""
 FIRST, TURN = -179, 359
 """Slider values are whole degrees from FIRST on, no two alike within TURN of them."""
 HELLO = {"type": "hello", "dark": False, "reduced": False, "width": 1280, "controls": True, "query": ""}
-CAMERA = {
-    "type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (3.3, -3.0, 2.0), "fov": 0.7,
-    "near": 0.01, "far": 1000.0, "image_height": 800, "image_width": 1280, "look_at": (0.0, 0.0, 0.0),
-    "up_direction": (0.0, 0.0, 1.0),
-}  # fmt: skip
-
-
-class Message(msgspec.Struct):
-    """The few fields of viser's messages that tell which state they show."""
-
-    type: str
-    name: str | None = None
-    uuid: str = ""
-    wxyz: tuple[float, float, float, float] | None = None
-    props: msgspec.Raw = msgspec.Raw()
-
-
-class Frame(msgspec.Struct):
-    """What one websocket frame holds."""
-
-    messages: list[Message]
-
-
-_frames = msgspec.msgpack.Decoder(Frame)
-_zstd = zstandard.ZstdDecompressor()
-_encode = msgspec.msgpack.Encoder().encode
-
-
-def messages(frame: bytes) -> list[Message]:
-    """viser's messages in a frame."""
-    raw, packed = int.from_bytes(frame[:8], "little"), int.from_bytes(frame[8:16], "little")
-    return _frames.decode(_zstd.decompress(frame[16 : 16 + packed], max_output_size=raw)).messages
 
 
 class Learner:
     """One page in a room of its own."""
 
-    def __init__(self, host: str, path: str) -> None:
+    def __init__(self, host: str, path: str, camera: Message) -> None:
+        self._camera = camera
         self._url = f"ws://{host}{path}"
         self._stack = AsyncExitStack()
         self._viser: ClientConnection
@@ -90,7 +59,7 @@ class Learner:
             await self._listen(await self._stack.enter_async_context(channel))
         viser_socket = connect(f"{self._url}?viewer={viewer}", subprotocols=[PROTOCOL], **options)
         self._viser = await self._stack.enter_async_context(viser_socket)
-        await self._viser.send(_encode(CAMERA))
+        await self._viser.send(encode_message(self._camera))
         self._tasks.append(asyncio.create_task(self._watch()))
         await asyncio.wait_for(self._opened.wait(), within)
 
@@ -111,12 +80,13 @@ class Learner:
                     self._look(frame, perf_counter())
 
     def _look(self, frame: bytes, now: float) -> None:
-        for message in messages(frame):
-            if message.wxyz is not None and message.name == TURNED:
-                w, _, _, z = message.wxyz
+        for message in decode_frame(frame):
+            kind = message["type"]
+            if kind == "SetOrientationMessage" and message["name"] == TURNED:
+                w, _, _, z = message["wxyz"]
                 self._see(round(math.degrees(2.0 * math.atan2(z, w))), now)
-            elif message.type == "GuiSliderMessage" and SLIDER in str(msgspec.msgpack.decode(message.props)):
-                self._slider = message.uuid
+            elif kind == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
+                self._slider = message["uuid"]
 
     def _see(self, value: int, now: float) -> None:
         self.shown = value
@@ -143,7 +113,7 @@ class Learner:
             self.late.append(loop.time() - due)
             self.sent.append(perf_counter())
             update = {"type": "GuiUpdateMessage", "uuid": self._slider, "updates": {"value": value}}
-            await self._viser.send(_encode(update))
+            await self._viser.send(encode_message(update))
 
     @property
     def arrived(self) -> bool:

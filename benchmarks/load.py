@@ -1,4 +1,4 @@
-"""The load generator, a process of its own: many learners at one server. `python -m benchmarks.load JOB`."""
+"""The load generator, a process of its own: many learners at one server. `python -m benchmarks.load < JOB`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 import uvloop
 
 from benchmarks.learner import FIRST, TURN, Learner
-from benchmarks.servers import LOAD_CORE, cpu_seconds, resident
+from benchmarks.process import cpu_seconds, resident
 
 RATE = 20.0
 """Values a second, which is as often as viser's page sends them."""
@@ -27,7 +27,7 @@ Result = dict[str, float]
 
 async def drag(job: Job) -> Result:
     """All learners drag at once for some seconds."""
-    learners = [Learner(job["host"], path) for path in job["paths"]]
+    learners = [Learner(job["host"], path, job["camera"]) for path in job["paths"]]
     await _open(learners)
     await _drag_all(learners, list(range(FIRST, FIRST + WARM_UP)))
     await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
@@ -57,7 +57,7 @@ async def drag(job: Job) -> Result:
 
 async def idle(job: Job) -> Result:
     """Memory of learners who only look; the first few, which also warm the server up, aren't counted."""
-    learners = [Learner(job["host"], path) for path in job["paths"]]
+    learners = [Learner(job["host"], path, job["camera"]) for path in job["paths"]]
     first, rest = learners[: job["first"]], learners[job["first"] :]
     await _open(first)
     before = await _settled(job["pid"])
@@ -76,7 +76,7 @@ async def churn(job: Job) -> Result:
 
     async def visitor() -> None:
         for path in paths:
-            learner = Learner(job["host"], path)
+            learner = Learner(job["host"], path, job["camera"])
             await learner.open()
             await learner.close()
 
@@ -137,8 +137,8 @@ JOBS = {"drag": drag, "idle": idle, "churn": churn}
 
 
 def main() -> None:
-    os.sched_setaffinity(0, {LOAD_CORE})
     job = json.load(sys.stdin)
+    os.sched_setaffinity(0, {job["core"]})
     json.dump(uvloop.run(JOBS[job["kind"]](job)), sys.stdout)
 
 

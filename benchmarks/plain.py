@@ -35,11 +35,11 @@ COLORS = {"x": (209, 36, 47), "y": (26, 127, 55), "z": (11, 95, 215)}
 server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
 
 
-def arc(axis: str, angle: float, radius: float = 1.2) -> npt.NDArray[np.float64]:
+def arc(axis: str, angle: float, radius: float = 1.2) -> npt.NDArray[np.float32]:
     """Segments of an arc about an axis."""
     k = "xyz".index(axis)
     t = np.linspace(0.0, angle, 49)
-    points = np.zeros((49, 3))
+    points = np.zeros((49, 3), np.float32)
     points[:, (k + 1) % 3] = radius * np.cos(t)
     points[:, (k + 2) % 3] = radius * np.sin(t)
     return np.stack([points[:-1], points[1:]], axis=1)
@@ -65,10 +65,10 @@ async def _(client: viser.ClientHandle) -> None:
     for name, color in (("hull", (201, 208, 216)), ("mark", (179, 89, 0))):
         scene.add_mesh_simple(f"{PARENTS[2]}/{name}", body[name].vertices, body[name].faces, color=color)
     arcs = [
-        scene.add_line_segments(f"{before}/arc{k}", arc("xyz"[k], 1.0), COLORS["xyz"[k]], line_width=4.0)
+        scene.add_line_segments(f"{before}/arc{k}", arc("xyz"[k], 1.0), COLORS["xyz"[k]], thickness=4.0)
         for k, before in enumerate(BEFORE)
     ]
-    labels = [scene.add_label(f"{before}/label{k}", "") for k, before in enumerate(BEFORE)]
+    labels = [scene.add_label(f"{before}/label{k}", "", position=(0.0, 0.0, 1.3)) for k, before in enumerate(BEFORE)]
 
     async def update(_: Any = None) -> None:
         angles = np.radians([s.value for s in sliders])
@@ -77,21 +77,19 @@ async def _(client: viser.ClientHandle) -> None:
         for k, turn in enumerate(turns):
             frames[k].wxyz = turn.as_quat(scalar_first=True)
             arcs[k].points = arc(order.value[k], angles[k])
-            labels[k].position = arcs[k].points[24, 0] * 1.1
             labels[k].text = f"{sliders[k].label} {sliders[k].value:.0f}°"
         axis_angle = whole.as_rotvec()
         parts = [f"<p>R</p>{table(whole.as_matrix())}"]
-        parts += [
-            f"<p>R{a}</p>{table(t.as_matrix())}" for a, t in zip(order.value, turns, strict=True)
-        ]
+        parts += [f"<p>R{a}</p>{table(t.as_matrix())}" for a, t in zip(order.value, turns, strict=True)]
         parts.append("<p>q = " + ", ".join(f"{v:.3f}" for v in whole.as_quat(scalar_first=True)) + "</p>")
         parts.append("<p>θn = " + ", ".join(f"{v:.3f}" for v in axis_angle) + "</p>")
         back = whole.as_euler(order.value.upper(), degrees=True)
         parts.append("<p>read back " + ", ".join(f"{v:.2f}" for v in back) + "</p>")
         numbers.content = f'<div class="numbers">{"".join(parts)}</div>'
 
-    for control in (order, *sliders):
-        control.on_update(update)
+    order.on_update(update)
+    for slider in sliders:
+        slider.on_update(update)
     await update()
 
 

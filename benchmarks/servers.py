@@ -3,89 +3,48 @@
 from __future__ import annotations
 
 import http.client
+import json
 import os
-import socket
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
 from urllib.parse import urlsplit
 
+from benchmarks.process import CORES, pinned
+from tests.server import camera_message, free_port, wait_for
+
 ROOT = Path(__file__).resolve().parent.parent
-CORES = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else [0]
-SERVER_CORE, LOAD_CORE = CORES[0], CORES[-1]
-START_WITHIN = 60.0
 SLUG = "euler-angles"
-
-
-@contextmanager
-def pinned(core: int) -> Iterator[None]:
-    """Processes that start in here run on one core."""
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {core})
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, before)
-
-
-def cpu_seconds(pid: int) -> float:
-    """CPU time of a process and all its threads so far, in nanosecond resolution.
-
-    Linux makes the clock's number from the process's, as clock_getcpuclockid(3) does; /proc counts in 10 ms.
-    """
-    return time.clock_gettime(~pid << 3 | 2)
-
-
-def resident(pid: int) -> float:
-    """Resident memory of a process in MB."""
-    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGESIZE") / 1e6
+SETTINGS = {"SIM3_HOST": "127.0.0.1", "SIM3_MAX_SESSIONS": "5000"}
 
 
 class Server:
-    """A running server process."""
+    """A server in a process of its own, while the context lasts."""
 
-    def __init__(self, module: str, ready: str) -> None:
-        self.port = _free_port()
-        environment = os.environ | {
-            "SIM3_HOST": "127.0.0.1", "SIM3_PORT": str(self.port), "SIM3_MAX_SESSIONS": "5000",
-        }  # fmt: skip
-        with pinned(SERVER_CORE):
+    way: str
+    module: str
+
+    def __enter__(self) -> Self:
+        self.port = free_port()
+        own = {**SETTINGS, "SIM3_PORT": str(self.port)}
+        with pinned(CORES[0]):
             self._process = subprocess.Popen(
-                [sys.executable, "-m", module], cwd=ROOT, env=environment, stdout=subprocess.DEVNULL
-            )
+                [sys.executable, "-m", self.module], cwd=ROOT, env={**os.environ, **own},
+                stdout=subprocess.DEVNULL,
+            )  # fmt: skip
         self.pid = self._process.pid
-        self._wait_for(ready)
-
-    def _wait_for(self, path: str) -> None:
-        end = time.monotonic() + START_WITHIN
-        while self._process.poll() is None and time.monotonic() < end:
-            with suppress(OSError):
-                self.get(path)
-                return
-            time.sleep(0.05)
-        self.stop()
-        raise SystemExit(f"The server to measure did not start (exit code {self._process.returncode}).")
-
-    def get(self, path: str) -> tuple[str, bytes]:
-        """The `location` header and body of the answer to a GET."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
         try:
-            connection.request("GET", path)
-            answer = connection.getresponse()
-            return answer.headers.get("location", ""), answer.read()
-        finally:
-            connection.close()
+            wait_for(self._answers, f"{self.module} to answer", patience=60.0)
+        except BaseException:
+            self._process.kill()
+            raise
+        return self
 
-    def address(self) -> str:
-        """Path of a page for one more learner."""
-        return "/"
-
-    def stop(self) -> None:
-        """End the process."""
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._process.terminate()
         try:
             self._process.wait(10)
@@ -93,39 +52,52 @@ class Server:
             self._process.kill()
             self._process.wait()
 
+    def get(self, path: str) -> http.client.HTTPResponse:
+        """The answer to a GET; a redirect isn't followed."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        connection.request("GET", path, headers={"connection": "close"})
+        return connection.getresponse()
+
+    def page(self) -> str:
+        """Path of a page for one more learner."""
+        return "/"
+
+    def load(self, kind: str, learners: int, **options: Any) -> dict[str, float]:
+        """Have the load generator do a job with so many learners; what it measured."""
+        job = {
+            "kind": kind, "host": f"127.0.0.1:{self.port}", "pid": self.pid, "core": CORES[-1],
+            "camera": camera_message(), "paths": [self.page() for _ in range(learners)], **options,
+        }  # fmt: skip
+        done = subprocess.run(
+            [sys.executable, "-m", "benchmarks.load"], cwd=ROOT, input=json.dumps(job), stdout=subprocess.PIPE,
+            text=True, check=True, timeout=300,
+        )  # fmt: skip
+        result: dict[str, float] = json.loads(done.stdout)
+        return result
+
+    def _answers(self) -> bool:
+        if self._process.poll() is not None:
+            raise RuntimeError(f"{self.module} ended with exit code {self._process.returncode}")
+        try:
+            return self.get("/healthz").status == 200
+        except OSError:
+            return False
+
 
 class Sim3(Server):
-    """The server of this repository: `python -m app`."""
+    """The server of this repository."""
 
-    way = "sim3"
+    way, module = "sim3", "app"
 
-    def __init__(self) -> None:
-        super().__init__("app", "/healthz")
+    def page(self) -> str:
+        return urlsplit(self.get(f"/sims/{SLUG}/embed").headers["location"]).path
 
-    def address(self) -> str:
-        return urlsplit(self.get(f"/sims/{SLUG}/embed")[0]).path
+    def sessions(self) -> int:
+        """How many sessions it keeps."""
+        return int(json.load(self.get("/healthz"))["sessions"])
 
 
 class Plain(Server):
-    """The plain viser way: `python -m benchmarks.plain`."""
+    """The plain viser way."""
 
-    way = "plain"
-
-    def __init__(self) -> None:
-        super().__init__("benchmarks.plain", "/healthz")
-
-
-@contextmanager
-def running(kind: type[Sim3] | type[Plain]) -> Iterator[Sim3 | Plain]:
-    """A server of its kind, ended afterwards."""
-    server = kind()
-    try:
-        yield server
-    finally:
-        server.stop()
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    way, module = "plain viser", "benchmarks.plain"

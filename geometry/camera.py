@@ -59,9 +59,7 @@ class Camera:
         """Inverse (3, 3) of K: from homogeneous pixels to directions in camera axes, at z = 1."""
         (fx, skew, cx), (_, fy, cy), _ = self.K.tolist()
         across = -skew / (fx * fy)
-        return np.array(
-            [[1.0 / fx, across, -cx / fx - across * cy], [0.0, 1.0 / fy, -cy / fy], [0.0, 0.0, 1.0]]
-        )
+        return np.array([[1.0 / fx, across, -cx / fx - across * cy], [0.0, 1.0 / fy, -cy / fy], [0.0, 0.0, 1.0]])
 
     @cached_property
     def back_projection(self) -> Array:
@@ -138,15 +136,8 @@ def _checked_intrinsics(K: Array) -> Array:
     K = np.array(K, dtype=np.float64)
     flat = K.ravel().tolist()
     triangular = len(flat) == 9 and flat[3:4] + flat[6:] == [0.0, 0.0, 0.0, 1.0]
-    if (
-        not triangular
-        or K.shape != (3, 3)
-        or not all(map(math.isfinite, flat))
-        or min(flat[0], flat[4]) <= 0.0
-    ):
-        raise GeometryError(
-            "K", K.tolist(), "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0"
-        )
+    if not triangular or K.shape != (3, 3) or not all(map(math.isfinite, flat)) or min(flat[0], flat[4]) <= 0.0:
+        raise GeometryError("K", K.tolist(), "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0")
     return K
 
 
@@ -154,9 +145,7 @@ def _checked_pose(T: Array) -> Array:
     T = np.array(T, dtype=np.float64)
     rigid = T.shape == (4, 4) and T[3].tolist() == [0.0, 0.0, 0.0, 1.0]
     if not rigid or not all(map(math.isfinite, T[:3, 3].tolist())):
-        raise GeometryError(
-            "T_camera_world", T.tolist(), "one rigid transform (4, 4) with last row (0, 0, 0, 1)"
-        )
+        raise GeometryError("T_camera_world", T.tolist(), "one rigid transform (4, 4) with last row (0, 0, 0, 1)")
     as_rotation("T_camera_world", T[:3, :3])
     return T
 

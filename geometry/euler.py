@@ -38,9 +38,7 @@ def factors(angles: npt.ArrayLike, order: str, frame: str) -> tuple[Factor, Fact
     angles (..., 3) in radians.
     Raises GeometryError for an unknown order or frame, or an angle that isn't finite: NaN in a batch.
     """
-    a, b, c = [
-        Factor(axis, angle, axis_rotation(axis, angle)) for axis, angle in _turns(angles, order, frame)
-    ]
+    a, b, c = [Factor(axis, angle, axis_rotation(axis, angle)) for axis, angle in _turns(angles, order, frame)]
     return a, b, c
 
 

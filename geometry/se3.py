@@ -16,9 +16,7 @@ def transform(R: npt.ArrayLike, t: npt.ArrayLike) -> Array:
     Raises GeometryError if R isn't a rotation; in a batch it gives NaN.
     """
     R, t = as_rotation("R", R), as_array("t", t, 3)
-    T = np.zeros(
-        (4, 4) if R.ndim == 2 and t.ndim == 1 else (*np.broadcast_shapes(R.shape[:-2], t.shape[:-1]), 4, 4)
-    )
+    T = np.zeros((4, 4) if R.ndim == 2 and t.ndim == 1 else (*np.broadcast_shapes(R.shape[:-2], t.shape[:-1]), 4, 4))
     T[..., :3, :3] = R
     T[..., :3, 3] = t
     T[..., 3, 3] = 1.0

@@ -8,6 +8,9 @@ addEventListener("message", (event) => {
   if (event.data?.type === "sim3:state") follow(event.data.query);
 });
 
+// Whichever of the two starts first: the sim tells of itself when it is ready, or when it is asked.
+frame?.contentWindow.postMessage({ type: "sim3:get" }, location.origin);
+
 // The sim tells its parameters; the options that this page was opened with stay beside them.
 function follow(query) {
   const given = new URLSearchParams(location.search);

@@ -94,9 +94,7 @@ def ensure_browser() -> str:
 
 
 def _playwrights_own() -> str | None:
-    asked = subprocess.run(
-        [sys.executable, "-c", ASK_PLAYWRIGHT], capture_output=True, text=True, check=False
-    )
+    asked = subprocess.run([sys.executable, "-c", ASK_PLAYWRIGHT], capture_output=True, text=True, check=False)
     path = asked.stdout.strip()
     return path if Path(path).is_file() and _starts(path) else None
 

@@ -6,8 +6,13 @@ import gc
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
 
 from tests.server import shared_host
+
+# How long an example takes says nothing on a busy machine.
+settings.register_profile("sim3", deadline=None)
+settings.load_profile("sim3")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -245,9 +245,7 @@ class Browser:
         self._host.call(lambda: self.client.gui.set_panel_label(mark))
         self._host.call(self.client.flush)
         latest = self.model.latest
-        wait_for(
-            lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send"
-        )
+        wait_for(lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send")
 
     def control(self, field: str) -> GuiElement:
         """The control of a parameter, or of a button, by the parameter's or action's name or its label."""

@@ -8,10 +8,7 @@ from __future__ import annotations
 
 import argparse
 import io
-import os
-import subprocess
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
@@ -22,6 +19,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from sims import SIMS
 from sims.kit.sim import Sim
 from tests.browser import launch_options
+from tests.server import Server
 
 ROOT = Path(__file__).resolve().parent.parent
 THUMBS = ROOT / "static" / "thumbs"
@@ -44,16 +42,16 @@ def main() -> None:
     args = arguments()
     args.out.mkdir(parents=True, exist_ok=True)
     THUMBS.mkdir(parents=True, exist_ok=True)
-    with serving() as address, sync_playwright() as playwright:
+    with Server() as server, sync_playwright() as playwright:
+        address = server.url
         browser = playwright.chromium.launch(**launch_options())
-        for sim in SIMS:
-            if sim.slug in (args.slugs or [sim.slug]):
-                for theme in THEMES:
-                    if args.thumbs:
-                        thumbnail(browser, address, sim, theme)
-                    review(browser, address, sim, theme, args.out)
-                if args.states:
-                    states(browser, address, sim, args.out)
+        for sim in (sim for sim in SIMS if not args.slugs or sim.slug in args.slugs):
+            for theme in THEMES:
+                if args.thumbs:
+                    thumbnail(browser, address, sim, theme)
+                review(browser, address, sim, theme, args.out)
+            if args.states:
+                states(browser, address, sim, args.out)
         if not args.slugs:
             pages(browser, address, args.out)
         browser.close()
@@ -64,24 +62,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "shots", help="folder of the screenshots")
     parser.add_argument("--states", action="store_true", help="also each sim at its singular states")
     parser.add_argument("--no-thumbs", dest="thumbs", action="store_false", help="leave the thumbnails alone")
-    parser.add_argument("slugs", nargs="*", choices=[*(sim.slug for sim in SIMS), []], metavar="slug")
-    return parser.parse_args()
-
-
-@contextmanager
-def serving() -> Iterator[str]:
-    """The application in a process of its own, on a port that the system chooses; yields its address."""
-    environment = os.environ | {"SIM3_HOST": "127.0.0.1", "SIM3_PORT": "0", "SIM3_ROOT_PATH": ""}
-    command = [sys.executable, "-m", "app"]
-    with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True) as server:
-        try:
-            assert server.stdout is not None
-            ready = next((line for line in server.stdout if "http://" in line), None)
-            if ready is None:
-                raise SystemExit("The application didn't start.")
-            yield "http://127.0.0.1:" + ready.split("http://", 1)[1].split("/", 1)[0].rsplit(":", 1)[1]
-        finally:
-            server.terminate()
+    parser.add_argument("slugs", nargs="*", metavar="slug", help="sims; without, all of them and the pages")
+    args = parser.parse_args()
+    if unknown := {*args.slugs} - {sim.slug for sim in SIMS}:
+        parser.error(f"there is no sim {', '.join(sorted(unknown))}")
+    return args
 
 
 @contextmanager

@@ -98,17 +98,13 @@ def uses_viser_internals(module: str) -> bool:
 def test_geometry_imports_only_numpy_and_the_standard_library(path: Path) -> None:
     tops = {(line, module.split(".")[0]) for line, module in imports_of(path)}
     wrong = [(line, top) for line, top in tops if top not in GEOMETRY_ALLOWED - INPUT_OUTPUT]
-    assert not wrong, (
-        f"{name_of(path)} may import NumPy and the standard library without input or output: {wrong}"
-    )
+    assert not wrong, f"{name_of(path)} may import NumPy and the standard library without input or output: {wrong}"
 
 
 @pytest.mark.parametrize("path", sources(*FORBIDDEN), ids=name_of)
 def test_imports_point_one_way(path: Path) -> None:
     package = path.relative_to(ROOT).parts[0]
-    wrong = [
-        (line, module) for line, module in imports_of(path) if module.split(".")[0] in FORBIDDEN[package]
-    ]
+    wrong = [(line, module) for line, module in imports_of(path) if module.split(".")[0] in FORBIDDEN[package]]
     assert not wrong, f"{name_of(path)} may not import {sorted(FORBIDDEN[package])}: {wrong}"
 
 

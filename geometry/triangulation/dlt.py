@@ -11,9 +11,7 @@ from ..epipolar import baseline
 from .result import Triangulation, conclude, pixel_pairs
 
 
-def triangulate_dlt(
-    left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike
-) -> Triangulation:
+def triangulate_dlt(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Triangulation:
     """Triangulate pixels (..., 2) by the least singular vector of the equations x (p₃·X) − p₁·X = 0.
 
     In normalised image coordinates, with P = [R | t] in the world as it is: the same as triangulatePoints of

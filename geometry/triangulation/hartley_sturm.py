@@ -9,8 +9,8 @@ def least_correction(F: Array, pair: Array) -> Array:
     """Return the shortest move (4,) of a pair (4,) of points, left and right, to right^T F left = 0.
 
     F (3, 3) has rank 2, and its entries and the points are of the order of one.
-    Source: Hartley and Zisserman 2004, algorithm 12.1, but with epipoles of unit length as three-vectors, which
-    keeps the polynomial balanced for points near an epipole.
+    Source: Hartley and Zisserman 2004, algorithm 12.1, but with epipoles of unit length as three-vectors,
+    which keeps the polynomial balanced for points near an epipole.
     """
     centred = _shift(pair[2:]).T @ F @ _shift(pair[:2])
     U, _, Vt = np.linalg.svd(centred)

@@ -24,9 +24,7 @@ class Midpoint(Triangulation):
     closest: Array
 
 
-def triangulate_midpoint(
-    left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike
-) -> Midpoint:
+def triangulate_midpoint(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Midpoint:
     """Triangulate pixels (..., 2) by the middle of the lines' common perpendicular, in closed form.
 
     Quick, and good for a wide baseline; it degrades near the epipoles and isn't projectively invariant.

@@ -20,8 +20,9 @@ def rgb(text: str) -> RGB:
 def before_tone_mapping(text: str, *, linear: bool = False) -> RGB:
     """The colour to send so that the browser shows #rrggbb.
 
-    viser's renderer applies three.js's filmic curve to everything; this is its inverse. Line colours are taken
-    as linear light there (`linear`), mesh colours as sRGB. Source: Hill's ACES fit, as in three.js.
+    viser's renderer applies three.js's filmic curve to everything; this is its inverse. Colours of lines
+    and arrows are taken as linear light there (`linear`), those of meshes as sRGB. Source: Hill's ACES fit, as in
+    three.js.
     """
     shown = np.array(rgb(text)) / 255.0
     light = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
@@ -73,7 +74,7 @@ class Palette:
         return before_tone_mapping(getattr(self, role))
 
     def line(self, role: str) -> RGB:
-        """What to send for lines of a role, so that they show in the role's colour."""
+        """What to send for lines and arrows of a role, so that they show in the role's colour."""
         return before_tone_mapping(getattr(self, role), linear=True)
 
     def style(self) -> str:

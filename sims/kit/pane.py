@@ -73,8 +73,9 @@ class Picture:
     def handle(self, name: str, at: Point, label: str, letter: str) -> None:
         """A point that pointer and keyboard can move; the session hears of it under `name`."""
         self._over.append(
-            f'<g data-handle="{name}" data-x="{at[0]!r}" data-y="{at[1]!r}" tabindex="0" role="application"'
-            f' aria-roledescription="movable point" aria-label="{escape(label)}: {at[0]:.1f}, {at[1]:.1f} pixels.'
+            f'<g data-handle="{name}" data-x="{float(at[0])!r}" data-y="{float(at[1])!r}" tabindex="0"'
+            f' role="application" aria-roledescription="movable point"'
+            f' aria-label="{escape(label)}: {at[0]:.1f}, {at[1]:.1f} pixels.'
             f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
             '<circle class="s3-grab" r="36"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
             f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'

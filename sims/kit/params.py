@@ -16,12 +16,15 @@ from pydantic.fields import FieldInfo
 
 LONGEST_VALUE = 400
 """Characters of one value in a query; a longer one is refused unread."""
+MOST_COMPLAINTS = 20
 
 
 class Params(BaseModel):
     """The whole state of a sim. Frozen; `changed` makes the next state."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True, validate_by_name=True
+    )
 
     def bounds(self, name: str) -> tuple[float, float]:
         """Least and greatest value of a numeric field in this state; override where they depend on it."""
@@ -92,7 +95,7 @@ class Params(BaseModel):
         state, wrong = cls._validated({name: unspell(cls.model_fields[name], text) for name, text in given.items()})
         complaints += [Complaint(name, clipped(given.get(name, "")), allowed) for name, allowed in wrong.items()]
         if complaints or state is None:
-            raise BadParams(complaints, {n: t for n, t in given.items() if n not in wrong})
+            raise BadParams(complaints[:MOST_COMPLAINTS], {n: t for n, t in given.items() if n not in wrong})
         return state
 
     @classmethod
@@ -243,8 +246,8 @@ def unspell(field: FieldInfo, text: str) -> Any:
 
 def clipped(text: Any, length: int = 80) -> str:
     """Text that is safe to show back: shortened."""
-    text = str(text)
-    return text if len(text) <= length else text[: length - 1] + "…"
+    whole = str(text)
+    return whole if len(whole) <= length else whole[: length - 1] + "…"
 
 
 def allowed_values(field: FieldInfo) -> str:

@@ -38,14 +38,15 @@ class Node:
 
     def __init__(self, handle: Any) -> None:
         self.handle = handle
+        self._pose: tuple[Any, Any] = (None, None)
         send_pose(handle)
 
     def pose(self, wxyz: Sequence[float] | None = None, position: Vector | None = None) -> None:
-        set_pose(
-            self.handle,
-            None if wxyz is None else (float(wxyz[0]), float(wxyz[1]), float(wxyz[2]), float(wxyz[3])),
-            None if position is None else (float(position[0]), float(position[1]), float(position[2])),
-        )
+        turned = self._pose[0] if wxyz is None else tuple(map(float, wxyz))
+        moved = self._pose[1] if position is None else tuple(map(float, position))
+        if (turned, moved) != self._pose:  # a tenth of the cost of asking viser's arrays
+            self._pose = (turned, moved)
+            set_pose(self.handle, turned, moved)
 
     def show(self, visible: bool) -> None:
         set_visible(self.handle, visible)
@@ -148,8 +149,10 @@ class Stage:
             position=(0.0, 0.0, height), shadow_opacity=0.0,
         )  # fmt: skip
         self.scene.configure_default_lights(enabled=False)
-        self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=0.15)
-        self.scene.add_light_directional("/sun", intensity=0.45, position=(2.0, -3.0, 6.0))
+        # viser's default map costs a machine without a GPU 10 s at each opening, and bleaches every colour.
+        self.scene.configure_environment_map(None)
+        self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=2.6)
+        self.scene.add_light_directional("/sun", intensity=1.2, position=(2.0, -3.0, 6.0))
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""
@@ -165,7 +168,7 @@ class Stage:
         """
         frame = self.group(name)
         unit = np.eye(3) * length
-        colors = np.array([self.palette.surface(a) for a in AXES], np.uint8)
+        colors = np.array([self.palette.line(a) for a in AXES], np.uint8)
         if ghost:
             patterns = {"x": (length, 0.0), "y": (0.12, 0.05), "z": (0.05, 0.05)}
             for axis, tip in zip(AXES, unit, strict=True):
@@ -196,7 +199,7 @@ class Stage:
     def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrow:
         """An arrow from tail to tip."""
         handle = self.scene.add_arrows(
-            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.surface(role),
+            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.line(role),
             shaft_radius=radius, head_radius=2.6 * radius, head_length=7 * radius,
         )  # fmt: skip
         return Arrow(handle)

@@ -70,6 +70,7 @@ class Viewer:
         self.client = client
         self.look = look
         self.palette = DARK if look.dark else LIGHT
+        self._style = self.palette.style()
         self._host = host
         client.gui.configure_theme(
             dark_mode=look.dark, show_logo=False, show_share_button=False, brand_color=ACCENT,
@@ -94,16 +95,14 @@ class Viewer:
                 set_property(self._readouts, "content", html)
             if self._panes is not None and self.sim.panes is not None:
                 panes = self.sim.panes(params, solution, self.palette)
-                set_property(self._panes, "content", pane.render(panes, self.palette.style()))
+                set_property(self._panes, "content", pane.render(panes, self._style))
         self.client.flush()
 
     def _regions(self, params: Params) -> str:
         """Where on a slider's track something happens, as fractions, for the companion to mark."""
-        spans = {}
-        for name, parts in params.regions().items():
-            low, high = params.bounds(name)
-            spans[worded(params, name)] = [[(v - low) / (high - low) for v in part] for part in parts]
-        return f'<span hidden data-s3-regions="{escape(json.dumps(spans))}"></span>' if spans else ""
+        return _marks(
+            tuple((worded(params, name), params.bounds(name), tuple(s)) for name, s in params.regions().items())
+        )
 
     def _dock(self) -> None:
         panel = self.client.gui.main_panel
@@ -162,7 +161,7 @@ class Viewer:
         if hints["control"] == "choice":
             labels = {word: hints["labels"][word] for word in choices(field)}
             words = {shown: word for word, shown in labels.items()}
-            from_control, to_control = words.get, labels.__getitem__
+            from_control, to_control = words.__getitem__, labels.__getitem__
             handle = gui.add_dropdown(label, tuple(words), initial_value=labels[value], **shared)
         elif hints["control"] == "switch":
             handle = gui.add_checkbox(label, value, **shared)
@@ -180,7 +179,7 @@ class Viewer:
 
         @handle.on_update  # type: ignore[untyped-decorator]
         async def _(_: Any) -> None:
-            with suppress(ValueError):  # a value that can't be; the session shows the last good one
+            with suppress(LookupError, ValueError):  # no page sends a value that can't be
                 self._host.change({name: from_control(handle.value)})
 
         return Control(name, handle, to_control, label, bounds)
@@ -194,6 +193,14 @@ def worded(params: Params, name: str) -> str:
     """The label of a control, with its unit."""
     unit = _unit(type(params), name)
     return f"{params.label(name)} ({unit})" if unit else params.label(name)
+
+
+@lru_cache(maxsize=256)
+def _marks(regions: tuple[tuple[str, tuple[float, float], tuple[tuple[float, float], ...]], ...]) -> str:
+    spans = {
+        label: [[(v - low) / (high - low) for v in span] for span in parts] for label, (low, high), parts in regions
+    }
+    return f'<span hidden data-s3-regions="{escape(json.dumps(spans))}"></span>' if spans else ""
 
 
 @lru_cache(maxsize=1024)

@@ -1,0 +1,75 @@
+"""How long a sim takes to open in a headless browser: until the still picture is painted, and until it is live."""
+
+from __future__ import annotations
+
+import os
+import statistics
+from typing import Any
+
+from playwright.sync_api import Browser, sync_playwright
+
+from benchmarks.process import CORES
+from benchmarks.servers import SLUG, Plain, Sim3
+from tests.browser import launch_options
+
+# Times from the start of the navigation, redirects included. What is put into the page counts as painted with the
+# frame after next; a picture only once its file is there.
+WATCH = """
+(() => {
+  const seen = (window.seen = {});
+  const note = (name) => (seen[name] = performance.now());
+  const look = () => {
+    if (!seen.still && document.querySelector(".s3-still")) {
+      const files = performance.getEntriesByType("resource").filter((e) => e.name.includes("/thumbs/"));
+      if (files.some((file) => file.responseEnd)) {
+        seen.still = -1;
+        requestAnimationFrame(() => requestAnimationFrame(() => note("still")));
+      }
+    }
+    if (window.sim3 ? window.sim3.live : document.querySelector("canvas") && document.querySelector(".numbers"))
+      note("live");
+    else setTimeout(look, 5);
+  };
+  look();
+})();
+"""
+SIZE: Any = {"width": 1280, "height": 800}
+PATIENCE = 60_000
+
+
+def measure(repeats: int) -> dict[str, dict[str, list[float]]]:
+    """Seconds until `live` and `still`, for each way, turn by turn; one opening beforehand doesn't count."""
+    found: dict[str, dict[str, list[float]]] = {}
+    with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
+        os.sched_setaffinity(0, CORES)
+        browser = playwright.chromium.launch(**launch_options())
+        addresses = {
+            sim3.way: f"http://127.0.0.1:{sim3.port}/sims/{SLUG}/embed",
+            plain.way: f"http://127.0.0.1:{plain.port}/",
+        }
+        for turn in range(repeats + 1):
+            for way, address in addresses.items():
+                times = open_once(browser, address)
+                if turn:
+                    for name, seconds in times.items():
+                        found.setdefault(way, {}).setdefault(name, []).append(seconds)
+        browser.close()
+    return found
+
+
+def open_once(browser: Browser, address: str) -> dict[str, float]:
+    """Open a page with nothing in the cache."""
+    context = browser.new_context(viewport=SIZE)
+    try:
+        page = context.new_page()
+        page.add_init_script(WATCH)
+        page.goto(address, wait_until="commit", timeout=PATIENCE)
+        page.wait_for_function("window.seen?.live", timeout=PATIENCE, polling=100)
+        seen: dict[str, float] = page.evaluate("window.seen")
+        return {name: at / 1e3 for name, at in seen.items() if at > 0}
+    finally:
+        context.close()
+
+
+def median(seconds: list[float]) -> float:
+    return statistics.median(seconds) if seconds else float("nan")

@@ -1,0 +1,97 @@
+"""The application in this process, served on a port: its insides can be looked at."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, Self
+
+import httpx
+import pytest
+import uvicorn
+
+from app.__main__ import config
+from app.settings import Settings
+from sims.kit.viser_internals import ViserHost
+from tests.server import PATIENCE, wait_for
+
+
+class Local:
+    """The whole server in this process, on a port that the system chooses."""
+
+    def __init__(self, **settings: Any) -> None:
+        self.problems: list[str] = []
+        self._host = ViserHost()
+        self._log = _Recorder(self.problems)
+        made = config(Settings(port=0, **settings), self._host)
+        self.app: Any = made.app
+        for name in ("sim3", "asyncio", "uvicorn.error"):
+            logging.getLogger(name).addHandler(self._log)
+        loop = self._host.loop
+        loop.call_soon_threadsafe(loop.set_exception_handler, self._failed)
+        self._server = uvicorn.Server(made)
+        self._serving = asyncio.run_coroutine_threadsafe(self._server.serve(), loop)
+        wait_for(lambda: self._server.started, "the server to listen")
+        port = self._server.servers[0].sockets[0].getsockname()[1]
+        self.url = f"http://127.0.0.1:{port}"
+        self.http = httpx.Client(base_url=self.url, trust_env=False, timeout=PATIENCE)
+
+    @property
+    def refusals(self) -> Counter[str]:
+        """What the bridge refused so far, by reason."""
+        counter: Counter[str] = self.app.state.bridge.refusals
+        return Counter(counter)
+
+    @property
+    def sessions(self) -> int:
+        """How many rooms are open."""
+        return len(self.app.state.sessions)
+
+    def refused(self, why: str, more_than: int = 0) -> None:
+        """Wait until the bridge has refused something for a reason more often than so many times."""
+        wait_for(lambda: self.refusals[why] > more_than, f"a refusal because of {why}; there were {self.refusals}")
+
+    def close(self) -> None:
+        self.http.close()
+        self._server.should_exit = True
+        self._serving.result(PATIENCE)
+        gc.collect()
+        self._host.stop()
+        for name in ("sim3", "asyncio", "uvicorn.error"):
+            logging.getLogger(name).removeHandler(self._log)
+
+    def _failed(self, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        self.problems.append(f"{context['message']}: {context.get('exception')!r}")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        self.close()
+        if kind is None and self.problems:
+            raise AssertionError("went wrong unseen: " + "; ".join(self.problems))
+
+
+class _Recorder(logging.Handler):
+    def __init__(self, said: list[str]) -> None:
+        super().__init__(logging.WARNING)
+        self._said = said
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._said.append(logging.Formatter().format(record))
+
+
+@pytest.fixture(scope="module")
+def local() -> Iterator[Local]:
+    """One server for the tests of a module; at its end nothing may have gone wrong unseen."""
+    with Local() as local:
+        yield local
+
+
+@pytest.fixture
+def http(local: Local) -> httpx.Client:
+    """For requests to it."""
+    return local.http

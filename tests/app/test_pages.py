@@ -1,0 +1,417 @@
+"""The pages: launcher, sim pages, and those that say what is wrong with a link or an address."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import fields
+from html.parser import HTMLParser
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import httpx
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from PIL import Image
+from playwright.sync_api import Browser, Page, Route
+
+from app.settings import ROOT
+from sims import SIMS
+from sims.kit.palette import DARK, LIGHT
+from sims.kit.sim import Sim
+from tests.browser import LaunchOptions, launch_options
+from tests.server import Server
+
+AnySim = Sim[Any, Any]
+PREFIX = "/geo/sim3"
+SIM = SIMS[0]
+ADDRESSES = {
+    "launcher": "/",
+    **{sim.slug: f"/sims/{sim.slug}" for sim in SIMS},
+    "dark": f"/sims/{SIM.slug}?theme=dark",
+    "bad link": f"/sims/{SIM.slug}?colour=red&view=1,2&controls=0",
+    "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
+    "no such sim": "/sims/nothing",
+    "no such page": "/nothing",
+}
+SIZES = ((1280, 800), (700, 600), (390, 780), (320, 640))
+STAND_IN = """<!doctype html><html lang="en"><title>Sim</title><h1>Sim</h1><script>
+const tell = () => parent.postMessage({type: "sim3:state", slug: "sim", query: 'yaw=45&name="', params: {}}, "*");
+addEventListener("message", (event) => event.data.type === "sim3:get" && tell());
+tell();
+</script>"""
+THUMB_BYTES = 40_000
+each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
+each_address = pytest.mark.parametrize("address", ADDRESSES.values(), ids=ADDRESSES.keys())
+
+
+class Element:
+    """An element of a page: its tag, attributes, and the words in it."""
+
+    def __init__(self, tag: str, attributes: dict[str, str]) -> None:
+        self.tag = tag
+        self.attributes = attributes
+        self.text = ""
+
+
+class Document(HTMLParser):
+    """Every element of a page, in order."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.elements: list[Element] = []
+        self._open: list[Element] = []
+        self.feed(html)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        element = Element(tag, {name: value or "" for name, value in attrs})
+        self.elements.append(element)
+        if tag not in ("br", "img", "link", "meta", "source"):
+            self._open.append(element)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append(Element(tag, {name: value or "" for name, value in attrs}))
+
+    def handle_data(self, data: str) -> None:
+        for element in self._open:
+            element.text += data
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open, f"</{tag}> closes nothing"
+        assert self._open.pop().tag == tag, f"</{tag}> closes something else"
+
+    def all(self, *tags: str) -> list[Element]:
+        return [element for element in self.elements if element.tag in tags]
+
+    def one(self, tag: str) -> Element:
+        (element,) = self.all(tag)
+        return element
+
+    def links(self) -> list[str]:
+        return [element.attributes["href"] for element in self.all("a")]
+
+    def loaded(self) -> list[str]:
+        """Addresses of everything that the browser fetches by itself."""
+        attributes = ("src", "srcset", "href")
+        elements = self.all("img", "source", "script", "iframe", "link")
+        return [element.attributes[a] for element in elements for a in attributes if a in element.attributes]
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[Server]:
+    with Server(SIM3_ROOT_PATH=PREFIX) as running:
+        yield running
+
+
+@pytest.fixture
+def client(server: Server) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.url, trust_env=False) as client:
+        yield client
+
+
+@pytest.fixture(scope="session")
+def browser_type_launch_args() -> LaunchOptions:
+    return launch_options()
+
+
+def get(client: httpx.Client, address: str, status: int = 200) -> Document:
+    answer = client.get(address)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"
+    return Document(answer.text)
+
+
+# ---- every page
+
+
+@each_address
+def test_page_has_the_structure_that_people_find_their_way_by(client: httpx.Client, address: str) -> None:
+    page = Document(client.get(address).text)
+    assert page.one("html").attributes["lang"] == "en"
+    assert "Sim3" in page.one("title").text
+    assert page.one("main").attributes["id"] == "main"
+    levels = [int(heading.tag[1]) for heading in page.all("h1", "h2", "h3")]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all("alt" in image.attributes for image in page.all("img"))
+    assert all(heading.text.strip() for heading in page.all("h1", "h2", "h3"))
+    ids = [element.attributes["id"] for element in page.elements if "id" in element.attributes]
+    assert len(ids) == len(set(ids))
+
+
+@each_address
+def test_everything_a_page_needs_is_here(client: httpx.Client, server: Server, address: str) -> None:
+    for wanted in Document(client.get(address).text).loaded():
+        assert wanted.startswith(PREFIX + "/")
+        answer = client.get(server.origin + wanted)
+        assert answer.status_code in (200, 307), wanted
+
+
+@each_address
+def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Server, address: str) -> None:
+    page = Document(client.get(address).text)
+    ids = {element.attributes.get("id") for element in page.elements}
+    for link in page.links():
+        if link.startswith("#"):
+            assert link[1:] in ids
+        elif not link.startswith("https://"):
+            assert link.startswith(PREFIX + "/")
+            assert client.get(server.origin + link).status_code in (200, 307), link
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_theme_of_a_link_holds_for_the_page_and_its_pictures(client: httpx.Client, theme: str) -> None:
+    page = get(client, f"/sims/{SIM.slug}?theme={theme}")
+    assert page.one("html").attributes["data-theme"] == theme
+    assert f"{SIM.slug}-{theme}.webp" in page.one("img").attributes["src"]
+    assert not page.all("source")
+
+
+# ---- launcher and sim pages
+
+
+def test_launcher_shows_every_sim_in_order(client: httpx.Client) -> None:
+    page = get(client, "/")
+    to_sims = [link for link in page.links() if "/sims/" in link]
+    assert to_sims == [f"{PREFIX}/sims/{sim.slug}" for sim in SIMS]
+    shown = [item.text for item in page.all("li")]
+    for sim in SIMS:
+        assert any(sim.title in text and sim.summary in text for text in shown)
+        assert set(sim.concepts) <= set(shown)
+
+
+@each_sim
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_thumbnail_is_there_and_light(sim: AnySim, theme: str) -> None:
+    data = (ROOT / "static" / "thumbs" / f"{sim.slug}-{theme}.webp").read_bytes()
+    assert len(data) < THUMB_BYTES
+    assert Image.open(io.BytesIO(data)).size == (800, 600)
+
+
+@each_sim
+def test_sim_page_says_what_the_sim_teaches(client: httpx.Client, sim: AnySim) -> None:
+    page = get(client, f"/sims/{sim.slug}")
+    assert page.one("h1").text == sim.title
+    items = [" ".join(item.text.split()) for item in page.all("li")]
+    assert {f"{o.text} Bloom level: {o.level}" for o in sim.objectives} <= set(items)
+    assert set(sim.concepts) <= set(items)
+    assert sim.summary in page.one("main").text
+
+
+@each_sim
+def test_sim_page_hands_its_query_on(client: httpx.Client, sim: AnySim) -> None:
+    link = next((query for changes in sim.states.values() if (query := sim.params().changed(changes).query())), "")
+    query = f"{link}&controls=0&theme=dark".lstrip("&")
+    page = get(client, f"/sims/{sim.slug}?{query}")
+    embed = f"{PREFIX}/sims/{sim.slug}/embed?{query}"
+    assert page.one("iframe").attributes["src"] == embed
+    assert embed in page.links()
+
+
+@each_sim
+def test_embed_code_opens_the_sim_as_it_is(client: httpx.Client, server: Server, sim: AnySim) -> None:
+    page = get(client, f"/sims/{sim.slug}?controls=0&theme=dark")
+    frame = Document(page.one("pre").text).one("iframe")
+    assert frame.attributes["src"] == f"{server.url}/sims/{sim.slug}/embed?controls=0&theme=dark"
+    assert frame.attributes["title"] == sim.title
+    assert client.get(frame.attributes["src"]).status_code == 307
+
+
+def test_sim_page_leads_to_its_neighbours(client: httpx.Client) -> None:
+    ways = [
+        {
+            a.attributes["rel"]: a.attributes["href"]
+            for a in get(client, f"/sims/{sim.slug}").all("a")
+            if "rel" in a.attributes
+        }
+        for sim in SIMS
+    ]
+    places = [f"{PREFIX}/sims/{sim.slug}" for sim in SIMS]
+    assert [way.get("prev") for way in ways] == [None, *places][:-1]
+    assert [way.get("next") for way in ways] == [*places, None][1:]
+
+
+# ---- what is wrong with a link
+
+
+@pytest.mark.parametrize("kind", ["", "/embed"])
+def test_bad_parameters_are_named_and_the_good_ones_kept(client: httpx.Client, server: Server, kind: str) -> None:
+    query = "colour=%3Cimg+src%3Dx%3E&view=1,2&theme=blue&controls=0"
+    page = get(client, f"/sims/{SIM.slug}{kind}?{query}", 422)
+    words = " ".join(page.one("main").text.split())
+    for part in ("colour", "<img src=x>", "view", "1,2", "six numbers", "theme", "blue", "light or dark"):
+        assert part in words
+    assert not page.all("img")
+    (way,) = [link for link in page.links() if "controls=0" in link]
+    assert urlsplit(way).path == f"{PREFIX}/sims/{SIM.slug}{kind}"
+    assert parse_qs(urlsplit(way).query) == {"controls": ["0"]}
+    assert client.get(server.origin + way).status_code in (200, 307)
+
+
+@each_sim
+def test_every_parameter_of_the_wrong_type_is_named(client: httpx.Client, sim: AnySim) -> None:
+    for name in sim.params.model_fields:
+        page = get(client, f"/sims/{sim.slug}?{name}=%22nonsense%22", 422)
+        described = [entry.text for entry in page.all("dd")]
+        assert described[:2] == [name, '"nonsense"']
+        assert described[2]
+
+
+def test_page_for_a_frame_leaves_out_what_surrounds_it(client: httpx.Client) -> None:
+    page = get(client, f"/sims/{SIM.slug}/embed?colour=red", 422)
+    assert not page.all("header", "footer", "nav")
+
+
+def test_full_server_says_so_and_offers_to_try_again() -> None:
+    with Server(SIM3_MAX_SESSIONS="1") as server, httpx.Client(base_url=server.url, trust_env=False) as client:
+        address = f"/sims/{SIM.slug}/embed"
+        assert client.get(address, follow_redirects=True).status_code == 200
+        answer = client.get(address, follow_redirects=True)
+        assert answer.status_code == 503
+        assert str(answer.url) in Document(answer.text).links()
+
+
+# ---- in a browser
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """A page on which sims are only a word, so that the page around them is what is tested."""
+    context = browser.new_context(reduced_motion="reduce", permissions=["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.route("**/embed*", stand_in)
+    yield page
+    context.close()
+
+
+def stand_in(route: Route) -> None:
+    """Instead of a sim in a frame: what a sim tells its page. Pages of errors come as they are."""
+    if route.request.frame.parent_frame is None:
+        route.continue_()
+        return
+    route.fulfill(body=STAND_IN, content_type="text/html")
+
+
+@pytest.mark.e2e
+@each_address
+def test_axe_finds_nothing(page: Page, server: Server, address: str) -> None:
+    page.goto(server.url + address)
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        found = Axe().run(page, {"exclude": [["iframe"]]}, {"resultTypes": ["violations"]})
+        assert not [
+            (theme, item["id"], node["target"], node["failureSummary"])
+            for item in found.response["violations"]
+            for node in item["nodes"]
+        ]
+
+
+@pytest.mark.e2e
+@each_address
+def test_page_fits_every_width(page: Page, server: Server, address: str) -> None:
+    page.goto(server.url + address)
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+@pytest.mark.e2e
+@pytest.mark.parametrize("address", ["/", f"/sims/{SIM.slug}"])
+def test_nothing_shifts_while_a_page_loads(page: Page, server: Server, address: str) -> None:
+    page.add_init_script(
+        "window.shifts = 0;"
+        "new PerformanceObserver(list => list.getEntries().forEach(e => window.shifts += e.value))"
+        ".observe({type: 'layout-shift', buffered: true})"
+    )
+    page.goto(server.url + address, wait_until="networkidle")
+    assert page.evaluate("window.shifts") == 0
+
+
+@pytest.mark.e2e
+def test_address_links_and_code_follow_the_sim(page: Page, server: Server) -> None:
+    place = f"{server.url}/sims/{SIM.slug}"
+    page.goto(f"{place}?controls=0")
+    page.wait_for_url(lambda url: "yaw=45" in url)
+    assert page.url == f"{place}?yaw=45&name=%22&controls=0"
+    assert page.get_by_role("link", name="Full screen").evaluate("link => link.href") == (
+        f"{place}/embed?yaw=45&name=%22&controls=0"
+    )
+    frame = Document(page.locator("pre").inner_text()).one("iframe")
+    assert frame.attributes["src"] == f"{place}/embed?yaw=45&name=%22&controls=0"
+
+
+@pytest.mark.e2e
+@pytest.mark.parametrize("clipboard", [True, False], ids=["with a clipboard", "without, as on plain HTTP"])
+def test_embed_code_is_copied(page: Page, server: Server, clipboard: bool) -> None:
+    if not clipboard:
+        page.add_init_script("Object.defineProperty(navigator, 'clipboard', {value: undefined, writable: true})")
+    page.goto(f"{server.url}/sims/{SIM.slug}")
+    page.get_by_role("button", name="Copy code").click()
+    page.get_by_role("status").get_by_text("Copied.").wait_for()
+    if clipboard:
+        Document(page.evaluate("navigator.clipboard.readText()")).one("iframe")
+
+
+@pytest.mark.e2e
+def test_keyboard_skips_to_the_content_and_past_the_sim(page: Page, server: Server) -> None:
+    page.goto(f"{server.url}/sims/{SIM.slug}")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    page.keyboard.press("Enter")
+    for _ in range(2):
+        page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip the sim"
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Copy code"
+
+
+@pytest.mark.e2e
+def test_page_around_a_frame_hears_of_a_bad_link(page: Page, server: Server) -> None:
+    page.unroute("**/embed*")
+    page.goto(f"{server.url}/")
+    message = page.evaluate(
+        """address => new Promise(resolve => {
+            addEventListener("message", event => resolve(event.data));
+            const frame = document.createElement("iframe");
+            frame.src = address;
+            document.body.append(frame);
+        })""",
+        f"{PREFIX}/sims/{SIM.slug}/embed?colour=red",
+    )
+    assert (message["type"], message["slug"]) == ("sim3:error", SIM.slug)
+    assert "colour" in message["message"]
+
+
+# ---- colours
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_pages_and_scenes_have_the_same_colours(palette: Any) -> None:
+    css = (ROOT / "static" / "tokens.css").read_text()
+    found = dict(re.findall(r"--(\w+): light-dark\((#\w{6}, #\w{6})\)", css))
+    for field in fields(palette):
+        if field.name != "dark":
+            assert found[field.name].split(", ")[palette.dark] == getattr(palette, field.name), field.name
+
+
+@pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])
+def test_every_colour_can_be_read_on_its_page(palette: Any) -> None:
+    for field in fields(palette):
+        if field.name not in ("dark", "page"):
+            assert contrast(getattr(palette, field.name), palette.page) >= 4.5, field.name
+
+
+def contrast(a: str, b: str) -> float:
+    """Contrast ratio of WCAG 2.2."""
+    light, dark = sorted((luminance(a), luminance(b)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+def luminance(color: str) -> float:
+    """Relative luminance of WCAG 2.2."""
+    parts = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    r, g, b = (v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in parts)
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b

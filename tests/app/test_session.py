@@ -1,0 +1,497 @@
+"""Sessions: one state, coalesced drawing, motions, and rooms that come and go."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from app import motion, session
+from app.session import Full, Session, Sessions, new_key, refusal, room_of
+from sims.kit.params import Params
+from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
+
+
+class Eye:
+    """A viewer that remembers what it was shown."""
+
+    def __init__(self, *, broken: bool = False) -> None:
+        self.seen: list[tuple[float, float]] = []
+        self.broken = broken
+
+    def draw(self, params: Any, solution: Any) -> None:
+        if self.broken:
+            raise RuntimeError("a viewer broke")
+        self.seen.append((params.size, solution.double))
+
+
+def viewer() -> Any:
+    return Eye()
+
+
+class Room:
+    """A session of the toy with a viewer and a listener."""
+
+    def __init__(self, seconds: float = 0.0, *, heavy: bool = False, start: Params | None = None) -> None:
+        sim, self.solver = toy(seconds, heavy=heavy)
+        self.sessions = Sessions(10)
+        self.session = self.sessions.open(sim, "room", start or ToyParams())
+        self.told: list[dict[str, Any]] = []
+        self.eye = viewer()
+        self.session.join(self.eye)
+        self.session.listeners.add(self.told.append)
+
+    async def drawn(self) -> None:
+        """Wait until nothing is left to draw."""
+        while (drawing := self.session._drawing) is not None:
+            await asyncio.wait([drawing])
+
+    async def moved(self) -> None:
+        """Wait until the motion has ended."""
+        while (moving := self.session._motion) is not None:
+            await asyncio.wait([moving])
+
+    @property
+    def errors(self) -> list[str]:
+        return [m["message"] for m in self.told if m["type"] == "error"]
+
+
+def run(test: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    asyncio.run(asyncio.wait_for(test(), 20))
+
+
+# ---- drawing
+
+
+def test_a_viewer_sees_the_state_at_once() -> None:
+    async def test() -> None:
+        room = Room(start=ToyParams(size=4))
+        assert room.eye.seen == [(4.0, 8.0)]
+
+    run(test)
+
+
+def test_many_changes_in_one_turn_of_the_loop_are_one_drawing() -> None:
+    async def test() -> None:
+        room = Room()
+        room.solver.solved.clear()
+        for k in range(100):
+            room.session.change({"size": float(k)})
+        await room.drawn()
+        assert room.solver.solved == [99.0]
+        assert room.eye.seen[1:] == [(99.0, 198.0)]
+
+    run(test)
+
+
+def test_changes_while_a_solve_runs_replace_each_other() -> None:
+    async def test() -> None:
+        room = Room(0.05, heavy=True)
+        room.solver.solved.clear()
+        for k in range(1, 21):
+            room.session.change({"size": float(k)})
+            await asyncio.sleep(0.01)
+        await room.drawn()
+        assert len(room.solver.solved) < 10
+        assert room.solver.solved == sorted(room.solver.solved)
+        assert room.eye.seen[-1] == (20.0, 40.0)
+        assert all(double == 2 * size for size, double in room.eye.seen)
+
+    run(test)
+
+
+def test_a_heavy_solve_does_not_hold_up_the_loop() -> None:
+    async def test() -> None:
+        room = Room(0.2, heavy=True)
+        before = time.monotonic()
+        room.session.change({"size": 7})
+        await asyncio.sleep(0.01)
+        assert time.monotonic() - before < 0.15
+        assert room.eye.seen == [(1.0, 2.0)]
+        late: Any = Eye()
+        room.session.join(late)
+        assert late.seen == [(1.0, 2.0)], "who joins meanwhile sees the last state that is solved"
+        assert room.session.state()["text"] == "Size 1, double 2."
+        await room.drawn()
+        assert room.eye.seen[-1] == late.seen[-1] == (7.0, 14.0)
+
+    run(test)
+
+
+def test_what_is_changed_while_drawing_is_drawn_too() -> None:
+    async def test() -> None:
+        room = Room()
+
+        class Echo(Eye):
+            def draw(self, params: Any, solution: Any) -> None:
+                super().draw(params, solution)
+                if params.size < 5:
+                    room.session.change({"size": params.size + 1})
+
+        echo: Any = Echo()
+        room.session.join(echo)
+        await room.drawn()
+        assert echo.seen[-1] == room.eye.seen[-1] == (5.0, 10.0)
+
+    run(test)
+
+
+def test_a_control_beyond_its_bounds_is_drawn_back() -> None:
+    async def test() -> None:
+        room = Room(start=ToyParams(size=100))
+        room.session.change({"size": 1e6})
+        await room.drawn()
+        assert room.session.version == 0
+        assert room.eye.seen == [(100.0, 200.0)] * 2
+
+    run(test)
+
+
+def test_all_viewers_of_a_room_see_each_change() -> None:
+    async def test() -> None:
+        room = Room()
+        others: list[Any] = [Eye() for _ in range(3)]
+        for other in others:
+            room.session.join(other)
+        room.session.change({"size": 8})
+        await room.drawn()
+        assert all(eye.seen[-1] == (8.0, 16.0) for eye in (room.eye, *others))
+        room.session.leave(viewer=others[0])
+        room.session.change({"size": 9})
+        await room.drawn()
+        assert others[0].seen[-1] == (8.0, 16.0)
+        assert others[1].seen[-1] == (9.0, 18.0)
+
+    run(test)
+
+
+def test_a_viewer_that_breaks_takes_nobody_along(caplog: pytest.LogCaptureFixture) -> None:
+    async def test() -> None:
+        room = Room()
+        eyes: list[Any] = [room.eye, *(Eye() for _ in range(4))]
+        broken: Any = Eye()
+        for eye in (*eyes[1:], broken):
+            room.session.join(eye)
+        broken.broken = True
+        room.session.change({"size": 3})
+        await room.drawn()
+        assert all(eye.seen[-1] == (3.0, 6.0) for eye in eyes)
+        room.session.change({"size": 4})
+        await room.drawn()
+        assert all(eye.seen[-1] == (4.0, 8.0) for eye in eyes)
+
+    with caplog.at_level(logging.CRITICAL, "sim3"):
+        run(test)
+
+
+# ---- what can't be
+
+
+@pytest.mark.parametrize("heavy", [False, True])
+def test_without_a_solution_the_last_good_state_stays_and_the_page_is_told(heavy: bool) -> None:
+    async def test() -> None:
+        room = Room(heavy=heavy)
+        room.session.change({"size": 4})
+        await room.drawn()
+        room.session.change({"size": IMPOSSIBLE})
+        await room.drawn()
+        assert room.errors == ["size is 13.0; allowed: anything but 13"]
+        assert room.session.params == ToyParams(size=4)
+        assert room.eye.seen[-1] == (4.0, 8.0), "the control goes back too"
+        assert room.session.state()["query"] == "size=4"
+        assert room.session.state()["text"] == "Size 4, double 8."
+        room.session.change({"size": 5})
+        await room.drawn()
+        assert room.eye.seen[-1] == (5.0, 10.0)
+
+    run(test)
+
+
+def test_what_comes_after_an_impossible_state_is_not_lost() -> None:
+    async def test() -> None:
+        room = Room(0.05, heavy=True)
+        room.session.change({"size": IMPOSSIBLE})
+        await asyncio.sleep(0.01)
+        room.session.change({"size": 6})
+        await room.drawn()
+        assert room.session.params == ToyParams(size=6)
+        assert room.eye.seen[-1] == (6.0, 12.0)
+
+    run(test)
+
+
+@pytest.mark.parametrize("changes", [{"size": 101}, {"size": "x"}, {"size": float("nan")}, {"kind": "green"}, {"x": 1}])
+def test_a_message_with_bad_values_is_refused_whole(changes: dict[str, Any]) -> None:
+    async def test() -> None:
+        room = Room()
+        with pytest.raises(ValidationError) as caught:
+            room.session.change({"kind": "blue", **changes}, live=False)
+        assert next(iter(changes)) in refusal(caught.value)
+        await room.drawn()
+        assert room.session.params == ToyParams()
+
+    run(test)
+
+
+def test_unknown_names_are_refused() -> None:
+    async def test() -> None:
+        room = Room()
+        with pytest.raises(KeyError):
+            room.session.act("explode")
+        with pytest.raises(KeyError):
+            room.session.drag("/nothing", (0.0, 0.0, 0.0))
+        with pytest.raises(ValidationError):
+            room.session.act("burst")
+        assert room.session.params == ToyParams()
+
+    run(test)
+
+
+# ---- actions and motions
+
+
+def test_dragging_a_handle_is_kept_within_bounds() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.drag("/grip", (7.5, 0.0, 0.0))
+        assert room.session.params == ToyParams(size=7.5)
+        room.session.drag("/grip", (-7.5, 0.0, 0.0))
+        assert room.session.params == ToyParams(size=0)
+
+    run(test)
+
+
+def test_a_button_leads_to_the_next_state() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("paint")
+        assert room.session.params == ToyParams(kind="blue")
+
+    run(test)
+
+
+def test_reset_leads_back_to_the_state_of_the_link() -> None:
+    async def test() -> None:
+        start = ToyParams(size=42, kind="blue")
+        room = Room(start=start)
+        room.session.change({"size": 3})
+        room.session.act("paint")
+        room.session.act("reset")
+        await room.drawn()
+        assert room.session.params == start
+        assert room.eye.seen[-1] == (42.0, 84.0)
+
+    run(test)
+
+
+def test_a_motion_glides_to_each_of_its_steps() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("grow")
+        await room.moved()
+        await room.drawn()
+        sizes = [size for size, _ in room.eye.seen]
+        assert sizes[1] == 0.0
+        assert sizes[1:] == sorted(sizes[1:])
+        assert min(abs(size - 50.0) for size in sizes) < 1e-3
+        assert sizes[-1] == room.session.params.model_dump()["size"] == 100.0
+        assert len(sizes) > 6
+
+    run(test)
+
+
+@pytest.mark.parametrize(
+    "touch",
+    [
+        lambda s: s.change({"size": 77}),
+        lambda s: s.change({"size": 77}, live=False),
+        lambda s: s.drag("/grip", (77.0, 0.0, 0.0)),
+        lambda s: (s.act("reset"), s.change({"size": 77})),
+    ],
+    ids=["control", "message", "drag", "button"],
+)
+def test_a_motion_stops_at_a_touch(touch: Callable[[Session], object]) -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("grow")
+        await asyncio.sleep(0.1)
+        touch(room.session)
+        await asyncio.sleep(0.1)
+        assert room.session.params.model_dump()["size"] == 77.0
+        await room.drawn()
+        assert room.eye.seen[-1] == (77.0, 154.0)
+
+    run(test)
+
+
+def test_a_motion_started_again_begins_anew() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("grow")
+        await asyncio.sleep(0.2)
+        room.session.act("grow")
+        await asyncio.sleep(0.02)
+        assert room.session.params.model_dump()["size"] < 25.0
+        await room.moved()
+        assert room.session.params == ToyParams(size=100)
+
+    run(test)
+
+
+def test_reduced_motion_steps_instead(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(motion, "PAUSE", 0.02)
+
+    async def test() -> None:
+        room = Room()
+        room.session.reduced_motion = True
+        room.session.act("grow")
+        await room.moved()
+        await room.drawn()
+        assert [size for size, _ in room.eye.seen[1:]] == [0.0, 50.0, 100.0]
+
+    run(test)
+
+
+def test_a_motion_ends_when_nobody_looks() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("grow")
+        await asyncio.sleep(0.05)
+        room.session.leave(viewer=room.eye)
+        room.session.leave(listener=room.session.listeners.copy().pop())
+        size = room.session.params.model_dump()["size"]
+        await asyncio.sleep(0.1)
+        assert room.session.params.model_dump()["size"] == size
+        assert not room.session.occupied
+
+    run(test)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "half"),
+    [
+        (0.0, 10.0, 5.0),
+        ((0.0, 2.0), (1.0, 4.0), (0.5, 3.0)),
+        ("x", "y", "y"),
+        (True, False, False),
+        ((1.0,), (1.0, 2.0), (1.0, 2.0)),
+    ],
+)
+def test_numbers_glide_and_words_jump(a: Any, b: Any, half: Any) -> None:
+    assert motion.between(a, b, 0.5) == half
+
+
+def test_easing_starts_and_stops_gently() -> None:
+    assert [motion.eased(f) for f in (0.0, 0.5, 1.0)] == [0.0, 0.5, 1.0]
+    assert motion.eased(0.1) < 0.1
+    assert motion.eased(0.9) > 0.9
+
+
+# ---- what the page is told
+
+
+def test_state_message_holds_parameters_query_and_words() -> None:
+    async def test() -> None:
+        room = Room(start=ToyParams(size=2))
+        assert room.session.state() == {
+            "type": "state",
+            "version": 0,
+            "params": {"size": 2.0, "kind": "red"},
+            "query": "size=2",
+            "text": "Size 2, double 4.",
+        }
+
+    run(test)
+
+
+def test_pages_are_told_the_last_state_and_not_each_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "STATE_INTERVAL", 0.05)
+
+    async def test() -> None:
+        room = Room()
+        for k in range(1, 31):
+            room.session.change({"size": float(k)})
+            await asyncio.sleep(0.005)
+        await asyncio.sleep(0.15)
+        told = [m["params"]["size"] for m in room.told if m["type"] == "state"]
+        assert 1 < len(told) < 20
+        assert told[-1] == 30.0
+        versions = [m["version"] for m in room.told if m["type"] == "state"]
+        assert versions == sorted(versions)
+
+    run(test)
+
+
+# ---- rooms
+
+
+def test_rooms_do_not_see_each_other() -> None:
+    async def test() -> None:
+        sim, _ = toy()
+        sessions = Sessions(10)
+        first, second = (sessions.open(sim, room, ToyParams()) for room in ("a", "b"))
+        first.change({"size": 9})
+        assert second.params == ToyParams()
+        assert sessions.find(sim, "a") is first
+        assert sessions.open(sim, "b", ToyParams(size=5)) is second
+        assert len(sessions) == 2
+        await asyncio.sleep(0)
+
+    run(test)
+
+
+def test_no_more_rooms_than_the_limit() -> None:
+    sim, _ = toy()
+    sessions = Sessions(2)
+    for room in ("a", "b"):
+        sessions.open(sim, room, ToyParams())
+    with pytest.raises(Full):
+        sessions.open(sim, "c", ToyParams())
+    sessions.open(sim, "a", ToyParams())
+    assert len(sessions) == 2
+
+
+def test_rooms_that_nobody_visits_are_swept(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test() -> None:
+        sim, _ = toy()
+        sessions = Sessions(2)
+        visited, left = (sessions.open(sim, room, ToyParams()) for room in ("visited", "left"))
+        eye: Any = Eye()
+        visited.join(eye)
+        sessions.sweep()
+        assert len(sessions) == 2, "they are kept for a while"
+        monkeypatch.setattr(session, "UNVISITED", 0.0)
+        left.left_at -= 1
+        sessions.open(sim, "new", ToyParams())
+        assert sessions.find(sim, "left") is None, "a room that nobody visits makes place"
+        assert sessions.find(sim, "visited") is visited
+        visited.leave(viewer=eye)
+        visited.left_at -= 1
+        sessions.sweep()
+        assert sessions.find(sim, "visited") is None
+
+    run(test)
+
+
+def test_a_state_without_a_solution_opens_no_room() -> None:
+    sim, solver = toy()
+    sessions = Sessions(2)
+    with pytest.raises(ValueError, match="anything but 13"):
+        sessions.open(sim, "a", ToyParams(size=IMPOSSIBLE))
+    assert isinstance(solver, Solver)
+    assert len(sessions) == 0
+
+
+def test_keys_cannot_be_guessed_and_make_their_rooms() -> None:
+    keys = {new_key() for _ in range(1000)}
+    assert len(keys) == len({room_of(key) for key in keys}) == 1000
+    assert all(len(key) >= 22 for key in keys)
+    key = keys.pop()
+    assert room_of(key) == room_of(key)
+    assert key not in room_of(key)
+    assert room_of(key).isalnum()

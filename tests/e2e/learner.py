@@ -1,0 +1,239 @@
+"""A learner at a browser: hands on the real controls, and everything that the page sent and received.
+
+learner.slide("yaw", 60)
+learner.sees(yaw=60)          # the channel's state, the API's solution, the address, the read-outs agree
+learner.scene.world_pose("/turn1")
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+from urllib.parse import parse_qsl, urlsplit
+
+import httpx
+from playwright.sync_api import (
+    BrowserContext, ConsoleMessage, Error, Frame, Locator, Page, Request, TimeoutError, WebSocket,
+)  # fmt: skip
+
+from sims import by_slug
+from sims.kit.params import Params
+from sims.kit.viewer import worded
+from tests.frames import Message, SceneModel, decode_message
+
+T = TypeVar("T")
+PATIENCE = 60.0
+"""Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
+OPTIONS = ("view", "controls", "theme")
+# three.js, inside viser's client, says so at each start.
+VISERS_OWN_WORDS = ("THREE.Clock: This module has been deprecated",)
+
+
+class Witness:
+    """What must not happen on any page of a browser: errors, warnings, requests to other hosts."""
+
+    def __init__(self, context: BrowserContext) -> None:
+        self.complaints: list[str] = []
+        self.hosts = {"127.0.0.1", "localhost"}
+        self.expected: tuple[str, ...] = VISERS_OWN_WORDS
+        context.on("console", self._said)
+        context.on("weberror", lambda error: self.complaints.append(f"exception: {error.error}"))
+        context.on("request", self._asked)
+
+    def expect(self, *words: str) -> None:
+        """From now on a page may complain in these words, because the test provokes it."""
+        self.expected += words
+
+    def _said(self, message: ConsoleMessage) -> None:
+        text = message.text
+        if message.type in ("error", "warning") and not any(words in text for words in self.expected):
+            self.complaints.append(f"console {message.type}: {text[:400]}")
+
+    def _asked(self, request: Request) -> None:
+        parts = urlsplit(request.url)
+        if parts.scheme in ("http", "https", "ws", "wss") and parts.hostname not in self.hosts:
+            self.complaints.append(f"request to another host: {request.url[:200]}")
+
+
+class Sockets:
+    """What a page's two websockets carried; viser's begins a new scene each time it connects."""
+
+    def __init__(self, page: Page) -> None:
+        self.scene = SceneModel()
+        self.camera: Message = {}
+        self.sent: list[Message] = []
+        self.told: list[Message] = []
+        """Messages on the channel, from the server."""
+        self.connected = 0
+        page.on("websocket", self._opened)
+
+    @property
+    def state(self) -> Message:
+        """The newest state that the server told."""
+        return next(m for m in reversed(self.told) if m["type"] == "state")
+
+    def _opened(self, socket: WebSocket) -> None:
+        if "/channel" in socket.url:
+            socket.on("framereceived", lambda data: self.told.append(json.loads(data)))
+            return
+        self.connected += 1
+        self.scene = scene = SceneModel()
+        socket.on("framereceived", scene.feed)
+        socket.on("framesent", self._sent)
+
+    def _sent(self, data: bytes | str) -> None:
+        assert isinstance(data, bytes)
+        message = decode_message(data)
+        self.sent.append(message)
+        if message["type"] == "ViewerCameraMessage":
+            self.camera = message
+
+
+class Learner:
+    """One person at one page that shows one sim, in the page itself or in a frame."""
+
+    def __init__(self, page: Page, witness: Witness, url: str) -> None:
+        self.page = page
+        self.witness = witness
+        self.url = url
+        self.sockets = Sockets(page)
+        self.frame: Frame = page.main_frame
+        page.set_default_timeout(PATIENCE * 1000)
+
+    # ---- coming and going
+
+    def open(self, path: str) -> None:
+        """Open a sim's address and wait until it is live."""
+        self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
+        self.wait_live()
+
+    def reload(self) -> None:
+        self.page.reload()
+        self.wait_live()
+
+    def wait_live(self) -> None:
+        self.frame.wait_for_function("window.sim3?.live === true")
+        self.until(lambda: bool(self.sockets.state and self.sockets.camera))
+
+    def until(self, happened: Callable[[], T], patience: float = PATIENCE) -> T:
+        """Wait until `happened` gives something true and raises nothing; sockets are heard meanwhile."""
+        until = time.monotonic() + patience
+        while True:
+            try:
+                answer = happened()
+                assert answer is not False
+            except (AssertionError, KeyError, StopIteration, IndexError):
+                if time.monotonic() > until:
+                    raise
+            else:
+                return answer
+            self.page.wait_for_timeout(50)
+
+    # ---- what is known of the sim
+
+    @property
+    def scene(self) -> SceneModel:
+        return self.sockets.scene
+
+    @property
+    def address(self) -> str:
+        url: str = self.frame.evaluate("location.href")
+        return url
+
+    @property
+    def slug(self) -> str:
+        return urlsplit(self.address).path.split("/sims/")[1].split("/")[0]
+
+    @property
+    def params(self) -> dict[str, Any]:
+        """The state that the server told last."""
+        params: dict[str, Any] = self.sockets.state["params"]
+        return params
+
+    @property
+    def state(self) -> Params:
+        sim = by_slug(self.slug)
+        assert sim is not None
+        state: Params = sim.params.model_validate(self.params)
+        return state
+
+    def label(self, name: str) -> str:
+        """What stands beside the control of a parameter now."""
+        return worded(self.state, name)
+
+    def solved(self) -> dict[str, Any]:
+        """What the API answers for the present state."""
+        answer = httpx.post(f"{self.url}/api/sims/{self.slug}/solve", json=self.params, timeout=PATIENCE)
+        assert answer.status_code == 200, answer.text
+        body: dict[str, dict[str, Any]] = answer.json()
+        assert body["params"] == self.params
+        return body["solution"]
+
+    # ---- the panel
+
+    def control(self, role: Any, name: str) -> Locator:
+        return self.frame.get_by_role(role, name=self.label(name), exact=True)
+
+    def slide(self, name: str, value: float) -> None:
+        """Take a slider's thumb with the mouse and pull it to a value, or as near as a pixel comes."""
+        low, high = self.state.bounds(name)
+        thumb = self.control("slider", name)
+        thumb.scroll_into_view_if_needed()
+        track = box(thumb.locator("xpath=.."))
+        at = box(thumb)
+        y = at["y"] + at["height"] / 2
+        mouse = self.page.mouse
+        mouse.move(at["x"] + at["width"] / 2, y)
+        mouse.down()
+        mouse.move(track["x"] + track["width"] * (value - low) / (high - low), y, steps=6)
+        mouse.up()
+
+    def press_keys(self, name: str, *keys: str) -> None:
+        """Keys on a slider's thumb."""
+        thumb = self.control("slider", name)
+        for key in keys:
+            thumb.press(key)
+
+    def type(self, name: str, text: str) -> None:
+        """Type into the number box of a control, and leave it with Enter."""
+        field = self.control("textbox", name).last
+        field.fill(text)
+        field.press("Enter")
+
+    def choose(self, name: str, word: str) -> None:
+        """Open a dropdown and choose what is shown for a word."""
+        sim = by_slug(self.slug)
+        assert sim is not None
+        shown = sim.params.model_fields[name].json_schema_extra["labels"][word]  # type: ignore[index,call-overload]
+        self.control("combobox", name).click()
+        self.frame.get_by_role("option", name=shown, exact=True).click()
+
+    def press(self, label: str) -> None:
+        """Press a button of the panel."""
+        self.frame.get_by_role("button", name=label, exact=True).click()
+
+    # ---- checking
+
+    def sees(self, **expected: Any) -> dict[str, Any]:
+        """Wait until the state is as expected and the address says it; the solution that the API gives for it."""
+
+        def settled() -> None:
+            got = {name: self.params[name] for name in expected}
+            assert got == expected
+            assert self.query() == self.sockets.state["query"]
+
+        self.until(settled)
+        return self.solved()
+
+    def query(self) -> str:
+        """The state in the address bar, without the page's own options."""
+        query = urlsplit(self.address).query
+        return "&".join(part for part in query.split("&") if part.split("=")[0] not in OPTIONS)
+
+
+def box(locator: Locator) -> dict[str, float]:
+    found = locator.bounding_box()
+    assert found is not None, f"{locator} isn't on the page"
+    return {**found}

@@ -1,0 +1,247 @@
+"""Parameters: links, bounds, complaints."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+from urllib.parse import parse_qsl
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import Field, ValidationError
+
+from sims.kit import params as kit
+from sims.kit.params import BadParams, Params, choice, number, plain, spell, switch, vector
+
+
+class Toy(Params):
+    """One field of each kind; the bounds of `turn` depend on `half`, and `size` was once called `scale`."""
+
+    turn: float = number(10, -180, 180, title="Turn", symbol="τ", description="An angle", step=1, unit="°")
+    count: int = number(3, 1, 12, title="Count", description="A whole number", step=1)
+    kind: Literal["one", "two"] = choice(
+        "one", title="Kind", description="A word", labels={"one": "The one", "two": "The two"}
+    )
+    half: bool = switch(False, title="Half", description="A switch")
+    place: tuple[float, float, float] = vector(
+        (0.0, 1.0, 0.5), -5, 5, title="Place", description="Three numbers", step=0.1, unit="m"
+    )
+    size: float = Field(
+        1.0, ge=0, le=2, alias="scale", title="Size", description="Renamed", json_schema_extra={"step": 0.1}
+    )
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        return (-90.0, 90.0) if name == "turn" and self.half else super().bounds(name)
+
+
+def read(query: str) -> Toy:
+    return Toy.from_query(parse_qsl(query, keep_blank_values=True))
+
+
+def refused(query: str) -> BadParams:
+    with pytest.raises(BadParams) as caught:
+        read(query)
+    return caught.value
+
+
+toys = st.builds(
+    Toy,
+    turn=st.floats(-90, 90),
+    count=st.integers(1, 12),
+    kind=st.sampled_from(["one", "two"]),
+    half=st.booleans(),
+    place=st.tuples(*[st.floats(-5, 5)] * 3),
+    size=st.floats(0, 2),
+)
+
+
+@given(toys)
+def test_link_holds_the_state_exactly(toy: Toy) -> None:
+    assert read(toy.query()) == toy
+
+
+@given(toys)
+def test_json_holds_the_state_exactly(toy: Toy) -> None:
+    assert Toy.model_validate(toy.model_dump(mode="json")) == toy
+
+
+@given(toys)
+def test_link_can_be_read_by_people(toy: Toy) -> None:
+    assert "%" not in toy.query().replace("%2B", "")
+    assert "+" not in toy.query()
+
+
+def test_link_leaves_defaults_out_and_spells_as_the_contract_says() -> None:
+    assert Toy().query() == ""
+    toy = Toy(turn=-30.5, half=True, place=(1, 0.5, -2), kind="two")
+    assert toy.query() == "turn=-30.5&kind=two&half=1&place=1,0.5,-2"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (30.0, "30"),
+        (0.5, "0.5"),
+        (-0.0, "0"),
+        (1e-9, "1e-09"),
+        (1e22, "1e+22"),
+        (True, "1"),
+        (False, "0"),
+        ((1.0, -0.0, 2.5), "1,0,2.5"),
+        ("left:1,2", "left:1,2"),
+    ],
+)
+def test_values_are_spelled_short(value: Any, text: str) -> None:
+    assert spell(value) == text
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_plain_numbers_read_back(value: float) -> None:
+    assert float(plain(value)) == value
+
+
+def test_old_name_still_works() -> None:
+    assert read("scale=1.5").size == 1.5
+    assert read("size=1.5").size == 1.5
+    assert read(read("scale=1.5").query()).size == 1.5
+
+
+def test_state_cannot_be_assigned_to() -> None:
+    with pytest.raises(ValidationError):
+        setattr(Toy(), "turn", 3.0)  # noqa: B010 — mypy knows that it's frozen
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "abc", "nan", "inf", "-Infinity", "1e999", "181", "-180.0001", "1,2", "0x10", "30°", "30;", "\x00", "−30"],
+)
+def test_bad_number_is_named_with_what_is_allowed(text: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        Toy.from_query([("turn", text), ("kind", "two")])
+    ((name, received, allowed),) = caught.value.complaints
+    assert (name, received, allowed) == ("turn", text, "a number from -180 to 180")
+    assert caught.value.good == {"kind": "two"}
+
+
+@pytest.mark.parametrize(
+    ("query", "allowed"),
+    [
+        ("count=2.5", "a whole number from 1 to 12"),
+        ("count=0", "a whole number from 1 to 12"),
+        ("kind=three", "one of: one, two"),
+        ("kind=One", "one of: one, two"),
+        ("kind=", "one of: one, two"),
+        ("half=yes", "1 or 0"),
+        ("half=", "1 or 0"),
+        ("half=true", "1 or 0"),
+        ("place=1,2", "3 numbers from -5 to 5, separated by commas"),
+        ("place=1,2,3,4", "3 numbers from -5 to 5, separated by commas"),
+        ("place=1,,2", "3 numbers from -5 to 5, separated by commas"),
+        ("place=1,nan,2", "3 numbers from -5 to 5, separated by commas"),
+        ("place=1 2 3", "3 numbers from -5 to 5, separated by commas"),
+        ("turn=" + "1" * 401, "at most 400 characters"),
+    ],
+)
+def test_each_kind_says_what_it_allows(query: str, allowed: str) -> None:
+    ((name, received, said),) = refused(query).complaints
+    assert name == query.partition("=")[0]
+    assert said == allowed
+    assert len(received) <= 80
+
+
+@pytest.mark.parametrize("query", ["place=1,2,6", "half=1&turn=100"])
+def test_bounds_that_only_the_model_knows(query: str) -> None:
+    ((name, _, allowed),) = refused(query).complaints
+    assert name in query
+    assert "must be from" in allowed
+
+
+def test_unknown_parameter_lists_those_that_are() -> None:
+    error = refused("colour=red&turn=5")
+    assert error.complaints == [("colour", "red", "one of: turn, count, kind, half, place, size")]
+    assert error.good == {"turn": "5"}
+
+
+def test_every_complaint_is_told_at_once() -> None:
+    error = refused("turn=x&count=99&kind=two&place=0,0,0&colour=red")
+    assert {c[0] for c in error.complaints} == {"turn", "count", "colour"}
+    assert error.good == {"kind": "two", "place": "0,0,0"}
+    assert all(part in str(error) for part in ("turn", "count", "colour"))
+
+
+def test_the_good_parameters_make_a_good_link() -> None:
+    error = refused("turn=x&place=1,2,3&half=1")
+    assert Toy.from_query(error.good.items()) == Toy(place=(1, 2, 3), half=True)
+
+
+def test_however_much_is_wrong_the_complaint_stays_short() -> None:
+    error = refused("&".join(f"a{k}={'x' * 50}" for k in range(2000)))
+    assert 1 <= len(error.complaints) <= 50
+
+
+def test_no_internal_name_is_a_parameter() -> None:
+    for name in ("model_config", "model_fields", "__class__", "bounds", "_clamped"):
+        assert refused(f"{name}=1").complaints[0][0] == name
+
+
+# ---- changes
+
+
+@pytest.mark.parametrize(
+    "changes", [{"turn": 181}, {"turn": math.nan}, {"turn": "x"}, {"colour": 1}, {"half": True, "turn": 91}]
+)
+def test_changes_from_a_message_are_refused_beyond_bounds(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        Toy().changed(changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"turn": 181}, {"turn": 180.0}),
+        ({"turn": -1e9}, {"turn": -180.0}),
+        ({"count": 40}, {"count": 12}),
+        ({"place": (9, 0, -9)}, {"place": (5.0, 0.0, -5.0)}),
+        ({"turn": 91, "half": True}, {"turn": 90.0, "half": True}),
+    ],
+)
+def test_changes_from_a_control_are_kept_within_bounds(changes: dict[str, Any], expected: dict[str, Any]) -> None:
+    toy = Toy().moved(changes)
+    assert toy.model_dump(include=set(expected)) == expected
+
+
+def test_bounds_that_become_narrower_take_the_value_along() -> None:
+    assert Toy(turn=150).moved({"half": True}).turn == 90.0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"turn": math.nan}, {"place": (1.0, math.nan, 0.0)}, {"place": (1.0, 2.0)}, {"kind": "three"}, {"colour": 1}],
+)
+def test_a_control_cannot_say_what_is_no_value(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        Toy().moved(changes)
+
+
+@given(toys, st.floats(allow_nan=False), st.booleans())
+def test_whatever_a_control_says_the_state_is_valid(toy: Toy, turn: float, half: bool) -> None:
+    moved = toy.moved({"turn": turn, "half": half})
+    assert Toy.model_validate(moved.model_dump(by_alias=False)) == moved
+
+
+# ---- words
+
+
+def test_labels_and_units() -> None:
+    assert Toy().label("turn") == "Turn τ"
+    assert Toy().label("place") == "Place"
+
+
+def test_numeric_fields_are_those_with_bounds() -> None:
+    assert kit.numeric_fields(Toy) == ("turn", "count", "place", "size")
+
+
+def test_long_text_is_cut_where_it_is_shown() -> None:
+    assert kit.clipped("x" * 80) == "x" * 80
+    assert kit.clipped("x" * 81) == "x" * 79 + "…"

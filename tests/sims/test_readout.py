@@ -1,0 +1,143 @@
+"""Read-outs: figures for people, MathML, notes."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sims.kit.readout import Formula, Note, Readout, Table, figure, math, mathml, quantity, render, row, symbol
+from tests.sims.markup import bad_numbers, mistakes, words, xml
+
+HOSTILE = "<script>alert('&')</script>\"x\""
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (0.0, 3, "0.000"),
+        (-0.0, 3, "0.000"),
+        (-0.0004, 3, "0.000"),
+        (-0.0006, 3, "−0.001"),
+        (0.9996, 3, "1.000"),
+        (-1.5, 1, "−1.5"),
+        (-0.4, 0, "0"),
+        (-0.6, 0, "−1"),
+        (-10.0, 0, "−10"),
+        (-100.0, 2, "−100.00"),
+        (1234567.891, 2, "1234567.89"),
+    ],
+)
+def test_figures_have_a_true_minus_and_no_negative_zero(value: float, digits: int, text: str) -> None:
+    assert figure(value, digits) == text
+
+
+@given(st.floats(-1e12, 1e12), st.integers(0, 6))
+def test_a_figure_reads_back_rounded(value: float, digits: int) -> None:
+    text = figure(value, digits)
+    assert not bad_numbers(text)
+    assert float(text.replace("−", "-")) == float(f"{value:.{digits}f}")
+    assert len(text.partition(".")[2]) == digits
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (30.0, "°", "30.0°"),
+        (0.6, "m", "0.6\u2009m"),
+        (-2.0, "px", "−2.0\u2009px"),
+        (5.0, "", "5.0"),
+        (50.0, "%", "50.0%"),
+    ],
+)
+def test_a_unit_stands_after_a_thin_space(value: float, unit: str, text: str) -> None:
+    assert quantity(value, unit, 1) == text
+
+
+def figures(html: str) -> list[float]:
+    return [float(str(n.text).replace("−", "-")) for n in xml(html).iter("mn")]
+
+
+@pytest.mark.parametrize("shape", [(), (3,), (4,), (2, 2), (3, 3), (3, 4), (4, 4), (1, 3)])
+def test_a_matrix_is_written_by_rows(shape: tuple[int, ...]) -> None:
+    value = np.arange(np.prod(shape), dtype=float).reshape(shape) - 2.0
+    html = mathml(value)
+    assert figures(html) == value.ravel().tolist()
+    table = [[len(list(r)) for r in t.iter("mtr")] for t in xml(html).iter("mtable")]
+    rows, columns = (*shape, 1)[:2] if shape else (0, 0)
+    assert table == ([[columns] * rows] if shape else [])
+
+
+def test_a_percent_sign_does_no_harm_beside_a_matrix() -> None:
+    assert "%" not in mathml(np.eye(2))
+
+
+def test_a_tuple_is_written_in_a_row() -> None:
+    assert words(row((1.0, -2.0, 0.5), 1)) == "( 1.0 , −2.0 , 0.5 )"
+
+
+def test_symbols_may_have_an_index() -> None:
+    assert words(math(symbol("R", "now"))) == "R now"
+    assert [e.tag for e in xml(symbol("R", "now"))] == ["msub"]
+    assert [e.tag for e in xml(symbol("R"))] == ["mi"]
+
+
+ALL: list[Readout] = [
+    Formula("A turn", symbol("R"), mathml(np.eye(3))),
+    Formula("An angle", symbol("θ"), mathml(30.0), "°"),
+    Formula("Without a name", "", mathml(1.0), "m"),
+    Table("Methods", [("method", "depth"), ("dlt", "4.00"), ("optimal", "4.01")]),
+    Note("All is well."),
+    Note("Near the edge.", "near"),
+    Note("Parallel rays: no finite point.", "warn"),
+]
+
+
+@pytest.mark.parametrize("readout", ALL, ids=lambda r: type(r).__name__)
+def test_each_kind_is_well_formed(readout: Readout) -> None:
+    xml(readout.html())
+    assert not mistakes(readout.html())
+
+
+def test_render_holds_all_in_order() -> None:
+    html = render(ALL)
+    root = xml(html)
+    assert len(root) == 1
+    assert len(root[0]) == len(ALL)
+    assert words(html).index("A turn") < words(html).index("Methods") < words(html).index("Parallel rays")
+
+
+def test_a_table_names_its_rows_and_columns() -> None:
+    root = xml(Table("Methods", [("method", "depth"), ("dlt", "4.00")]).html())
+    assert [(h.get("scope"), h.text) for h in root.iter("th")] == [
+        ("col", "method"),
+        ("col", "depth"),
+        ("row", "dlt"),
+    ]
+    assert [d.text for d in root.iter("td")] == ["4.00"]
+    assert [c.text for c in root.iter("caption")] == ["Methods"]
+
+
+@pytest.mark.parametrize(("level", "icon"), [("info", False), ("near", True), ("warn", True)])
+def test_a_warning_has_an_icon_that_screen_readers_skip(level: str, icon: bool) -> None:
+    root = xml(Note("Words", level).html())
+    hidden = [e.text for e in root.iter() if e.get("aria-hidden") == "true"]
+    assert hidden == (["⚠"] if icon else [])
+    assert "Words" in words(Note("Words", level).html())
+
+
+@pytest.mark.parametrize(
+    "html",
+    [
+        Formula(HOSTILE, symbol(HOSTILE, HOSTILE), mathml(1.0), HOSTILE).html(),
+        Table(HOSTILE, [(HOSTILE, HOSTILE), (HOSTILE, HOSTILE)]).html(),
+        Note(HOSTILE, "warn").html(),
+    ],
+    ids=["formula", "table", "note"],
+)
+def test_words_are_escaped(html: str) -> None:
+    assert "<script" not in html
+    assert HOSTILE in re.sub(r"\s+", " ", " ".join(xml(html).itertext()))
