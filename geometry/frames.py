@@ -66,7 +66,6 @@ def handedness(axes: npt.ArrayLike) -> str:
     """Return "right" or "left": the sign of the determinant of axes (3, 3) in columns, of any length.
 
     Raises GeometryError if the axes lie in one plane, and have no handedness.
-    Source: Goldstein, Poole and Safko 2002, "Classical Mechanics", sec. 4.6.
     """
     matrix = as_finite_array("axes", axes, 3, 3)
     if matrix.ndim != 2:
@@ -83,7 +82,7 @@ def change_of_basis(basis_from: npt.ArrayLike, basis_to: npt.ArrayLike) -> Array
 
     Their determinant is 1, a rotation, between bases of one handedness and −1, improper, between others.
     Raises GeometryError if a basis isn't three perpendicular axes of length one; in a batch it gives NaN.
-    Source: basis_to⁻¹ basis_from, the inverse by the transpose; Strang 2016, "Linear Algebra", sec. 8.2.
+    Source: basis_to⁻¹ basis_from, the inverse by the transpose.
     """
     source, target = _orthonormal("basis_from", basis_from), _orthonormal("basis_to", basis_to)
     M = target.swapaxes(-1, -2) @ source + 0.0  # no −0

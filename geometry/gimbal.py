@@ -42,7 +42,7 @@ def ring_axes(yaw: float | Array, pitch: float | Array) -> Array:
 
     yaw, the outer ring, and pitch, the middle one, (...) in radians; the inner ring turns about its own axis.
     Raises GeometryError for an angle that isn't finite; in a batch it gives NaN.
-    Source: Diebel 2006, "Representing Attitude", sec. 5.6, the rates of the sequence (1, 2, 3).
+    Source: Diebel 2006, "Representing Attitude": the rates of the sequence yaw, pitch, roll.
     """
     (cos, sin), (c, s) = cos_sin(as_angle("yaw", yaw)), cos_sin(as_angle("pitch", pitch))
     zero, one = 0.0 * (cos + c), 1.0 + 0.0 * (cos + c)

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Array, stack
-from .errors import GeometryError, as_angle, as_array
-from .euler import euler_to_matrix, matrix_to_euler
-from .quaternion import conjugate, from_axis_angle, from_matrix, multiply, normalize, to_axis_angle, to_matrix
+from .arrays import Array, components, cos_sin, norm, stack
+from .errors import GeometryError, as_angle, as_array, as_finite_array
+from .euler import matrix_to_euler
+from .quaternion import conjugate, from_axis_angle, multiply, normalize, to_axis_angle, to_matrix
 
 TIE = 1e-12  # radians and quaternion components; rounding mustn't choose between two equal ways
 
@@ -40,7 +40,7 @@ def nlerp(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array, *, long_wa
 
     The same arc as `slerp`, faster in the middle. Where the chord runs through zero, at the middle of a whole turn,
     it is what it tends to: half of that turn. Ends, errors and ties are as in `slerp`.
-    Source: Shoemake 1985, sec. 3.3; the chord (1 − t) start + t end in coordinates along start and across it.
+    Source: the chord (1 − t) start + t end in coordinates along start and across it.
     """
     t = as_angle("t", t)
     first, last = _arc(start, end, long_way)
@@ -63,3 +63,55 @@ def _along(first: Array, last: Array, axis: Array, turned: Any, t: float | Array
     if isinstance(t, float):
         return np.where(t == 1.0, last, q) if q.ndim > 1 else last if t == 1.0 else q
     return np.where((t == 1.0)[..., None], last, q)
+
+
+def euler_interpolation(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array) -> Array:
+    """Return the unit quaternions (..., 4) at t (...) on the way that the Euler angles of start and end take.
+
+    Intrinsic zyx: yaw, pitch and roll each go the short way, at constant speed. It isn't a turn about one axis, and
+    at gimbal lock it depends on the choice of a zero roll. At t = 0 it is start to rounding; it doesn't jump to −q.
+    Raises GeometryError for a zero quaternion or a t that isn't finite; in a batch they give NaN.
+    """
+    t = as_angle("t", t)
+    first = normalize(start)
+    angles, _ = matrix_to_euler(to_matrix(first), "zyx", "intrinsic")
+    goal, _ = matrix_to_euler(to_matrix(end), "zyx", "intrinsic")
+    q = _from_yaw_pitch_roll(interpolate_angles(angles, goal, t))
+    same = np.vecdot(_from_yaw_pitch_roll(angles), first) >= 0.0
+    return np.where(same[..., None], q, -q)
+
+
+def interpolate_angles(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array) -> Array:
+    """Return the angles (..., n) at t (...) from start (..., n) to end, each the short way round, in radians.
+
+    An angle that has half a turn to go (within 1e-12) goes up. At t = 1 it is end, give or take whole turns.
+    Raises GeometryError for a t that isn't finite; in a batch it gives NaN.
+    """
+    first, last = as_array("start", start), as_array("end", end)
+    ahead = np.remainder(last - first, 2.0 * math.pi)
+    turn = np.where(ahead > math.pi + TIE, ahead - 2.0 * math.pi, ahead)
+    return np.asarray(first + np.asarray(as_angle("t", t))[..., None] * turn)
+
+
+def _from_yaw_pitch_roll(angles: Array) -> Array:
+    yaw, pitch, roll = components(angles)
+    (cy, sy), (cp, sp), (cr, sr) = (cos_sin(0.5 * angle) for angle in (yaw, pitch, roll))
+    return stack(
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+
+
+def angular_speed(path: npt.ArrayLike, t: npt.ArrayLike) -> Array:
+    """Return the mean angular speed (..., n − 1), in radians per unit of t, between samples of a path (..., n, 4).
+
+    t (n,) grows from each of the two or more samples to the next. Quaternions q and −q are one sample.
+    Raises GeometryError if it doesn't grow so; a zero quaternion gives NaN.
+    """
+    q, times = normalize(path), as_finite_array("t", t)
+    if times.ndim != 1 or q.ndim < 2 or q.shape[-2] != times.size or times.size < 2 or (np.diff(times) <= 0.0).any():
+        raise GeometryError("t", times.tolist(), "growing numbers, one for each of two or more samples")
+    step = multiply(q[..., 1:, :], conjugate(q[..., :-1, :]))
+    return np.asarray(2.0 * np.arctan2(norm(step[..., 1:]), np.abs(step[..., 0])) / np.diff(times))

@@ -79,6 +79,7 @@ def opened(
         viewport={"width": width, "height": height}, device_scale_factor=scale, color_scheme=theme,
         reduced_motion="reduce",
     )  # fmt: skip
+    context.set_default_timeout(PATIENCE)
     try:
         page = context.new_page()
         page.goto(address)
@@ -91,9 +92,9 @@ def wait_live(page: Page) -> None:
     """Wait until every sim on the page, itself or in a frame, is drawn."""
     for frame in page.frames:
         if "/s/" in frame.url:
-            frame.wait_for_function("window.sim3?.live === true", timeout=PATIENCE)
-            frame.wait_for_selector(".s3-still", state="detached", timeout=PATIENCE)
-            frame.wait_for_selector(".mantine-Notification-root", state="detached", timeout=PATIENCE)
+            frame.wait_for_function("window.sim3?.live === true")
+            frame.wait_for_selector(".s3-still", state="detached")
+            frame.wait_for_selector(".mantine-Notification-root", state="detached")
     settled(page)
 
 

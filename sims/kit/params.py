@@ -6,7 +6,7 @@ the live controls, the link, the JSON schema, validation and the tests.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Self, cast, get_args
 from urllib.parse import urlencode
@@ -52,19 +52,22 @@ class Params(BaseModel):
         value = getattr(self, name)
         if value is None:
             return None
-        low, high = self.bounds(name)
         if isinstance(value, tuple):
-            return tuple(min(max(v, low), high) for v in value)
+            return tuple(min(max(v, low), high) for v, (low, high) in zip(value, self._ranges(name, value), strict=False))
+        low, high = self.bounds(name)
         return min(max(value, low), high)
+
+    def _ranges(self, name: str, value: tuple[float, ...]) -> Sequence[tuple[float, float]]:
+        return _declared_ranges(type(self), name) or (self.bounds(name),) * len(value)
 
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
         for name in numeric_fields(type(self)):
             value = getattr(self, name)
-            low, high = self.bounds(name)
             entries = value if isinstance(value, tuple) else () if value is None else (value,)
-            if not all(low <= v <= high for v in entries):
-                raise ValueError(f"{name} must be from {plain(low)} to {plain(high)}, got {spell(value)}")
+            ranges = self._ranges(name, entries)
+            if not all(low <= v <= high for v, (low, high) in zip(entries, ranges, strict=False)):
+                raise ValueError(f"{name} must be {_spans(ranges)}, got {spell(value)}")
         return self
 
     def query(self) -> str:
@@ -159,8 +162,8 @@ def switch(default: bool, *, title: str, description: str, group: str = "") -> A
 
 def vector(
     default: tuple[float, ...],
-    low: float,
-    high: float,
+    low: float | tuple[float, ...],
+    high: float | tuple[float, ...],
     *,
     title: str,
     description: str,
@@ -169,13 +172,12 @@ def vector(
     group: str = "",
     control: str = "vector",
 ) -> Any:
-    """Two or three numbers that belong together, each from `low` to `high`; `1,0.5,2` in a link."""
-    return Field(
-        default, title=title, description=description,
-        json_schema_extra={
-            "step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high,
-        },
-    )  # fmt: skip
+    """Two or three numbers that belong together; `1,0.5,2` in a link.
+
+    `low` and `high` bound every entry, or each its own when they are tuples.
+    """
+    hints: Any = {"step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high}
+    return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
 def extra(field: FieldInfo) -> dict[str, Any]:
@@ -199,11 +201,29 @@ def _declared_title(model: type[Params], name: str) -> str:
     return title(model.model_fields[name])
 
 
+@lru_cache(maxsize=1024)
+def _declared_ranges(model: type[Params], name: str) -> tuple[tuple[float, float], ...] | None:
+    hints = extra(model.model_fields[name])
+    own = isinstance(hints.get("low"), tuple)
+    return tuple(zip(hints["low"], hints["high"], strict=True)) if own else None
+
+
+def _spans(ranges: Iterable[tuple[float, float]]) -> str:
+    spans = dict.fromkeys(f"from {plain(low)} to {plain(high)}" for low, high in ranges)
+    return ", then ".join(spans)
+
+
+def entry_bounds(field: FieldInfo) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Declared least and greatest values of a vector's entries."""
+    low, high, count = extra(field)["low"], extra(field)["high"], len(field.default)
+    return (low, high) if isinstance(low, tuple) else ((low,) * count, (high,) * count)
+
+
 def field_bounds(field: FieldInfo) -> tuple[float, float]:
-    """Declared bounds of a numeric field (of each entry, for vectors)."""
-    hints = extra(field)
-    if "low" in hints:
-        return hints["low"], hints["high"]
+    """Declared bounds of a numeric field; for vectors, those that all entries are within."""
+    if "low" in extra(field):
+        lows, highs = entry_bounds(field)
+        return min(lows), max(highs)
     found = {type(m).__name__: m for m in field.metadata}
     return found["Ge"].ge, found["Le"].le
 
@@ -257,10 +277,11 @@ def allowed_values(field: FieldInfo) -> str:
         return "1 or 0"
     if words := choices(field):
         return "one of: " + ", ".join(words)
+    if isinstance(field.default, tuple):
+        spans = _spans(zip(*entry_bounds(field), strict=True))
+        return f"{len(field.default)} numbers {spans}, separated by commas"
     low, high = field_bounds(field)
     span = f"from {plain(low)} to {plain(high)}"
-    if isinstance(field.default, tuple):
-        return f"{len(field.default)} numbers {span}, separated by commas"
     return f"a number {span}" if field.annotation is not int else f"a whole number {span}"
 
 

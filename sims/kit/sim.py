@@ -47,6 +47,23 @@ class Action(Generic[P]):
 
 
 @dataclass(frozen=True)
+class Typed(Generic[P, S]):
+    """The same as dragging a node of the scene, by number: three inputs that tell `handle` a place in metres.
+
+    They show the place that `place` finds, and hide where there is none. They are not state: what the handle sets is.
+    """
+
+    handle: str
+    title: str
+    description: str
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    place: Callable[[P, S], tuple[float, float, float] | None]
+    step: float = 0.01
+    unit: str = "m"
+
+
+@dataclass(frozen=True)
 class View:
     """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
 
@@ -81,6 +98,7 @@ class Sim(Generic[P, S]):
     actions: Sequence[Action[P]] = ()
     panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
     handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
+    typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     heavy: bool = False
     """Solving can take over 5 ms: it runs in the pool, beside the event loop."""

@@ -42,8 +42,8 @@ class Node:
         send_pose(handle)
 
     def pose(self, wxyz: Sequence[float] | None = None, position: Vector | None = None) -> None:
-        turned = self._pose[0] if wxyz is None else tuple(map(float, wxyz))
-        moved = self._pose[1] if position is None else tuple(map(float, position))
+        turned: Any = self._pose[0] if wxyz is None else tuple(map(float, wxyz))
+        moved: Any = self._pose[1] if position is None else tuple(map(float, position))
         if (turned, moved) != self._pose:  # a tenth of the cost of asking viser's arrays
             self._pose = (turned, moved)
             set_pose(self.handle, turned, moved)

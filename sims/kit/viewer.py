@@ -14,8 +14,8 @@ import viser
 
 from sims.kit import pane, readout
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, choices, extra, field_bounds
-from sims.kit.sim import Sim
+from sims.kit.params import Params, choices, entry_bounds, extra
+from sims.kit.sim import Sim, Typed
 from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import set_property, set_value
 
@@ -62,6 +62,21 @@ class Control:
         set_value(self.handle, self.to_control(getattr(params, self.name)))
 
 
+@dataclass
+class TypedPlace:
+    """Three numbers that set what dragging a node sets; hidden while there is no such place."""
+
+    typed: Typed[Any, Any]
+    handle: Any
+    visible: bool = True
+
+    def draw(self, params: Params, solution: Any) -> None:
+        place = self.typed.place(params, solution)
+        set_value(self.handle, place or (0.0, 0.0, 0.0))
+        if self.visible != (place is not None):
+            self.visible = self.handle.visible = place is not None
+
+
 class Viewer:
     """Everything that one viser client shows."""
 
@@ -79,6 +94,7 @@ class Viewer:
         self._dock()
         self._panes = self._add_panes()
         self._controls: list[Control] = []
+        self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
@@ -90,6 +106,8 @@ class Viewer:
             self.scene.draw(params, solution)
             for control in self._controls:
                 control.draw(params)
+            for place in self._places:
+                place.draw(params, solution)
             if self._readouts is not None:
                 html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
                 set_property(self._readouts, "content", html)
@@ -132,6 +150,8 @@ class Viewer:
         for group, names in groups.items():
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
                 self._controls += [self._control(params, name) for name in names]
+                if not group:
+                    self._places = [self._typed(typed) for typed in self.sim.typed]
         with gui.add_folder("Actions"):
             for action in self.sim.actions:
                 self._button(action.label, action.hint, action.name)
@@ -167,9 +187,8 @@ class Viewer:
             handle = gui.add_checkbox(label, value, **shared)
         elif isinstance(field.default, tuple):
             add: Any = gui.add_vector2 if len(field.default) == 2 else gui.add_vector3
-            low, high = field_bounds(field)
-            ends = {"min": (low,) * len(value), "max": (high,) * len(value)}
-            handle = add(label, value, step=hints["step"], **ends, **shared)
+            least, greatest = entry_bounds(field)
+            handle = add(label, value, min=least, max=greatest, step=hints["step"], **shared)
         elif hints["control"] == "number":
             low, high = params.bounds(name)
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
@@ -183,6 +202,19 @@ class Viewer:
                 self._host.change({name: from_control(handle.value)})
 
         return Control(name, handle, to_control, label, bounds)
+
+    def _typed(self, typed: Typed[Any, Any]) -> TypedPlace:
+        handle = self.client.gui.add_vector3(
+            f"{typed.title} ({typed.unit})", (0.0, 0.0, 0.0), min=typed.low, max=typed.high, step=typed.step,
+            hint=typed.description, disabled=self.look.watching,
+        )  # fmt: skip
+
+        @handle.on_update
+        async def _(_: Any) -> None:
+            with suppress(ValueError):
+                self._host.drag(typed.handle, handle.value)
+
+        return TypedPlace(typed, handle)
 
     def _dragged(self, name: str, dragged: Dragged) -> None:
         if not self.look.watching:

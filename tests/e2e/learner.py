@@ -14,12 +14,15 @@ from typing import Any, TypeVar
 from urllib.parse import parse_qsl, urlsplit
 
 import httpx
+import numpy as np
+import numpy.typing as npt
 from playwright.sync_api import (
     BrowserContext, ConsoleMessage, Error, Frame, Locator, Page, Request, TimeoutError, WebSocket,
 )  # fmt: skip
 
 from sims import by_slug
 from sims.kit.params import Params
+from sims.kit.readout import figure
 from sims.kit.viewer import worded
 from tests.frames import Message, SceneModel, decode_message
 
@@ -29,6 +32,10 @@ PATIENCE = 60.0
 OPTIONS = ("view", "controls", "theme")
 # three.js, inside viser's client, says so at each start.
 VISERS_OWN_WORDS = ("THREE.Clock: This module has been deprecated",)
+
+# Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
+FORMULAS = """() => [...document.querySelectorAll(".s3-readouts math")].map(formula => [
+    formula.textContent.split("=")[0], ...[...formula.querySelectorAll("mn")].map(n => n.textContent)])"""
 
 
 class Witness:
@@ -226,6 +233,12 @@ class Learner:
 
         self.until(settled)
         return self.solved()
+
+    def reads(self, name: str, value: npt.ArrayLike) -> bool:
+        """Whether the read-outs show a number, vector or matrix under a name."""
+        formulas: list[list[str]] = self.frame.evaluate(FORMULAS)
+        wanted = [figure(v) for v in np.ravel(np.asarray(value, dtype=float)).tolist()]
+        return [name, *wanted] in formulas
 
     def query(self) -> str:
         """The state in the address bar, without the page's own options."""

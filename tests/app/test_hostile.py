@@ -1,0 +1,572 @@
+"""Hostile and broken clients on both websockets, while a learner in another room works on undisturbed."""
+
+from __future__ import annotations
+
+import gc
+import json
+import random
+import socket
+import struct
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from typing import Any
+
+import msgspec
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from app import bridge
+from app.session import new_key, room_of
+from sims.kit.viewer import Viewer
+from sims.kit.viser_internals import PROTOCOL, Wire
+from tests.app.conftest import Local
+from tests.app.page import SLUG, Page, closed, connect
+from tests.frames import encode_message
+from tests.server import Server, camera_message, wait_for
+
+NAN, INFINITE = float("nan"), float("inf")
+VECTOR, PLACE = (0.0, 0.0, 0.0), (0.5, 0.5)
+
+
+@pytest.fixture(scope="module")
+def learner(local: Local) -> Iterator[Page]:
+    """Somebody who only wants to learn."""
+    with Page(local.url) as page:
+        yield page
+
+
+@pytest.fixture
+def page(local: Local, learner: Page) -> Iterator[Page]:
+    """A page to misuse. When it has been, the learner's still works."""
+    with Page(local.url) as page:
+        yield page
+    learner.works()
+
+
+# ---- what isn't a message at all
+
+
+def garbage() -> Iterator[bytes]:
+    chance = random.Random(7)
+    for length in (1, 2, 3, 7, 16, 100, 1000, 16_000):
+        yield chance.randbytes(length)
+    yield from (msgspec.msgpack.encode(value) for value in (None, True, 17, 1.5, "text", [], {}, [1, 2], {"type": 3}))
+    yield from (b"\x91" * 16_000, b"\x81\xa4type" * 2_000, b"\xdd\xff\xff\xff\xff", b"\xc6\xff\xff\xff\xff", b"")
+
+
+@pytest.mark.parametrize("data", list(garbage()), ids=lambda data: f"{len(data)} {data[:6].hex()}")
+def test_random_bytes_are_dropped_and_counted(local: Local, page: Page, data: bytes) -> None:
+    before = local.refusals["message"]
+    page.viser.send(data)
+    local.refused("message", before)
+    page.works()
+
+
+def test_random_bytes_again_and_again_end_the_connection(local: Local, page: Page) -> None:
+    chance = random.Random(8)
+    with suppress(ConnectionClosed):
+        for _ in range(200):
+            page.viser.send(chance.randbytes(50))
+    assert closed(page.viser) == 1008
+
+
+@pytest.mark.parametrize("data", ["text", json.dumps(camera_message()), "", b"x" * 20_000, b"x" * 2_000_000])
+def test_text_and_huge_frames_end_the_connection(local: Local, page: Page, data: str | bytes) -> None:
+    before = local.refusals["size or kind"]
+    page.viser.send(data)
+    assert closed(page.viser) == 1009
+    if len(data) < 1 << 20:  # uvicorn itself refuses larger ones
+        local.refused("size or kind", before)
+
+
+# ---- messages that viser would obey
+
+
+FORBIDDEN = [
+    {"type": "ShareUrlRequest"},
+    {"type": "ShareUrlDisconnect"},
+    {"type": "RunJavascriptMessage", "source": "alert(1)"},
+    {"type": "GuiButtonHoldMessage", "uuid": "x", "frequency": 1e9},
+    {"type": "GuiFormSubmitMessage", "uuid": "x"},
+    {"type": "GuiRemoveMessage", "uuid": "x"},
+    {"type": "ResetGuiMessage"},
+    {"type": "RemoveSceneNodeMessage", "name": "/world", "owner": ""},
+    {"type": "SetPositionMessage", "name": "/turn1", "position": (9.0, 9.0, 9.0), "owner": ""},
+    {"type": "SceneNodeUpdateMessage", "name": "/world", "updates": {}, "owner": ""},
+    {"type": "FileTransferStartUpload", "source_component_uuid": "x", "transfer_uuid": "y", "filename": "../x",
+     "mime_type": "text/plain", "part_count": 1, "size_bytes": 1},
+    {"type": "FileTransferPart", "transfer_uuid": "y", "source_component_uuid": "x", "part_index": 0, "content": b"x"},
+    {"type": "GetRenderResponseMessage", "payload": b"x"},
+    {"type": "CommandTriggerMessage", "uuid": "x"},
+    {"type": "LocalStorageGetItemResponseMessage", "request_uuid": "x", "value": "y"},
+    {"type": "_messages"},
+    {"type": "Message"},
+    {"type": "object"},
+    {"type": "x" * 10_000},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("message", FORBIDDEN, ids=lambda m: str(m["type"])[:30])
+def test_other_types_of_messages_do_not_reach_viser(local: Local, page: Page, message: dict[str, Any]) -> None:
+    before = local.refusals["message"]
+    page.send(message)
+    local.refused("message", before)
+    page.works()
+    assert "ShareUrlUpdated" not in page.model.latest
+
+
+DRAG = {
+    "type": "SceneNodeDragMessage", "phase": "start", "name": "/world", "instance_index": None,
+    "start_position": VECTOR, "start_screen_pos": PLACE, "end_position": VECTOR, "end_screen_pos": PLACE,
+    "button": "left", "modifier": None, "owner": "",
+}  # fmt: skip
+BROKEN = {
+    "camera without fields": {"type": "ViewerCameraMessage"},
+    "camera with NaN": {**camera_message(), "fov": NAN},
+    "camera infinitely far": {**camera_message(), "position": (INFINITE, 0.0, 0.0)},
+    "camera too far": {**camera_message(), "position": (1e300, 0.0, 0.0)},
+    "camera with words": {**camera_message(), "wxyz": "1000"},
+    "camera with five numbers": {**camera_message(), "wxyz": (1.0, 0.0, 0.0, 0.0, 0.0)},
+    "camera with more": {**camera_message(), "camera_cb": []},
+    "drag with NaN": {**DRAG, "end_position": (NAN, 0.0, 0.0)},
+    "drag in no phase": {**DRAG, "phase": "before"},
+    "drag with no button": {**DRAG, "button": "fourth"},
+    "drag of a number": {**DRAG, "name": 5},
+    "drag of a long name": {**DRAG, "name": "/" * 401},
+}
+
+
+@pytest.mark.parametrize("message", BROKEN.values(), ids=BROKEN.keys())
+def test_messages_with_wrong_fields_are_dropped(local: Local, page: Page, message: dict[str, Any]) -> None:
+    before = local.refusals["message"]
+    page.send(message)
+    local.refused("message", before)
+    page.works()
+
+
+UPDATES: list[Any] = [
+    {},
+    {"disabled": True},
+    {"visible": False},
+    {"value": 5.0, "label": "<b>"},
+    {"update_cb": []},
+    {"removed": True},
+    {"__class__": "x"},
+    {"value": NAN},
+    {"value": INFINITE},
+    {"value": -1e300},
+    {"value": None},
+    {"value": {"a": 1}},
+    {"value": [1.0] * 33},
+    {"value": [NAN]},
+    {"value": [[1.0]]},
+    {"value": "x" * 401},
+    {"value": b"bytes"},
+    [],
+    "value",
+]
+
+
+@pytest.mark.parametrize("updates", UPDATES, ids=lambda u: str(u)[:30])
+def test_a_control_takes_nothing_but_a_value(local: Local, page: Page, updates: Any) -> None:
+    before = local.refusals["message"]
+    page.send({"type": "GuiUpdateMessage", "uuid": page.model.control("Yaw").uuid, "updates": updates})
+    local.refused("message", before)
+    page.works()
+    assert not page.model.control("Yaw").props["disabled"]
+
+
+# ---- messages that pass and make no sense
+
+
+ODD_VALUES = [
+    "abc",
+    "",
+    "nan",
+    "inf",
+    "1e999",
+    True,
+    False,
+    [],
+    [1.0],
+    [1.0, 2.0, 3.0],
+    [1e9] * 32,
+    2**63,
+    -(2**63),
+    0,
+    1e9,
+]
+
+
+@pytest.mark.parametrize("value", ODD_VALUES, ids=str)
+@pytest.mark.parametrize("label", ["Yaw", "Order", "Frame", "Animate", "Reset", "Parameters"])
+def test_a_control_survives_a_value_of_another_kind(page: Page, label: str, value: Any) -> None:
+    page.move(label, value)
+    page.works()
+    assert -180.0 <= page.params["yaw"] <= 180.0
+
+
+SENSELESS = {
+    "unknown control": {"type": "GuiUpdateMessage", "uuid": "nothing", "updates": {"value": 1.0}},
+    "unknown node": {**DRAG, "name": "/nothing"},
+    "node that can't be dragged": DRAG,
+    "drag that never began": {**DRAG, "phase": "update"},
+    "drag that ends twice": {**DRAG, "phase": "end"},
+    "drag of the root": {**DRAG, "name": ""},
+    "drag of somebody else's": {**DRAG, "owner": "17"},
+    "drag with an odd modifier": {**DRAG, "modifier": "hyper"},
+    "batch index": {**DRAG, "instance_index": -5},
+    "click": {"type": "SceneNodeClickMessage", "name": "/nothing", "instance_index": None, "ray_origin": VECTOR,
+              "ray_direction": VECTOR, "screen_pos": PLACE, "modifier": None, "owner": ""},
+    "pointer": {"type": "ScenePointerMessage", "event_type": "click", "ray_origin": None, "ray_direction": None,
+                "screen_pos": [], "modifier": None},
+    "unknown pointer": {"type": "ScenePointerMessage", "event_type": "hover", "ray_origin": VECTOR,
+                        "ray_direction": VECTOR, "screen_pos": [PLACE] * 8, "modifier": "x"},
+    "transform": {"type": "TransformControlsUpdateMessage", "name": "/world", "wxyz": (0.0,) * 4, "position": VECTOR,
+                  "owner": ""},
+    "transform start": {"type": "TransformControlsDragStartMessage", "name": "/nothing", "owner": ""},
+    "transform end": {"type": "TransformControlsDragEndMessage", "name": "/nothing", "owner": ""},
+    "camera without a direction": {**camera_message(), "wxyz": (0.0,) * 4, "up_direction": VECTOR},
+    "camera without a picture": {**camera_message(), "image_height": 0, "image_width": -(2**31)},
+    "camera inside out": {**camera_message(), "near": 100.0, "far": -1.0, "fov": 0.0},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("message", SENSELESS.values(), ids=SENSELESS.keys())
+def test_messages_without_sense_do_no_harm(page: Page, message: dict[str, Any]) -> None:
+    page.send(message)
+    page.send(message)
+    page.works()
+
+
+# ---- the channel
+
+
+BEFORE_HELLO: list[str | bytes] = [
+    "",
+    "not json",
+    "{}",
+    "[]",
+    b"\x00\x01",
+    '{"type": "get"}',
+    '{"type": "set", "params": {"yaw": 1}}',
+    '{"type": "hello"}',
+    '{"type": "hello", "dark": 1, "reduced": false, "width": 900, "controls": true, "query": ""}',
+    '{"type": "hello", "dark": false, "reduced": false, "width": NaN, "controls": true, "query": ""}',
+    json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 9, "controls": True, "query": "x" * 4001}),
+    "[" * 16_000,
+    "x" * 2_000_000,
+]
+
+
+@pytest.mark.parametrize("first", BEFORE_HELLO, ids=lambda first: f"{len(first)} {first[:40]!r}")
+def test_a_channel_that_does_not_greet_is_closed(local: Local, learner: Page, first: str | bytes) -> None:
+    before, rooms = local.refusals["channel"], local.sessions
+    key = new_key()
+    channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
+    channel.send(first)
+    assert closed(channel) in (1008, 1009)
+    if len(first) < 1 << 20:
+        local.refused("channel", before)
+    assert local.sessions == rooms
+    learner.works()
+
+
+def test_a_channel_that_says_nothing_is_closed(local: Local, learner: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bridge, "HELLO_WITHIN", 0.05)
+    before = local.refusals["channel"]
+    key = new_key()
+    channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
+    assert closed(channel) == 1008
+    local.refused("channel", before)
+    learner.works()
+
+
+def test_a_greeting_with_a_bad_state_begins_at_the_defaults(local: Local) -> None:
+    for query in ("yaw=x", "yaw=999&roll=5", "%00=%ff", "&&&&", "yaw=1;roll=2"):
+        with Page(local.url, query) as page:
+            assert page.params["yaw"] == 30.0
+
+
+AFTER_HELLO: list[str] = [
+    "not json",
+    "",
+    "[]",
+    "17",
+    "[" * 10_000,
+    '{"type": "sudo"}',
+    '{"type": "get", "more": 1}',
+    '{"type": "action"}',
+    '{"type": "action", "name": 5}',
+    '{"type": "action", "name": "' + "x" * 101 + '"}',
+    '{"type": "handle", "name": "/grip", "x": NaN, "y": 0}',
+    '{"type": "handle", "name": "/grip", "x": 1e10, "y": 0}',
+    '{"type": "handle", "name": "/grip", "x": "1", "y": 0}',
+    '{"type": "set", "params": []}',
+    '{"type": "set", "params": {"yaw": NaN}}',
+    '{"type": "set", "params": {"a": ' + "[" * 10_000 + "}}",
+    json.dumps({"type": "set", "params": {f"a{k}": 1 for k in range(101)}}),
+    '{"type": "set", "params": {"yaw": 1}',
+]
+
+
+@pytest.mark.parametrize("text", AFTER_HELLO, ids=lambda text: f"{len(text)} {text[:40]}")
+def test_nonsense_on_the_channel_is_dropped_and_counted(local: Local, page: Page, text: str) -> None:
+    before = local.refusals["channel"]
+    page.channel.send(text)
+    local.refused("channel", before)
+    page.works()
+
+
+REFUSED: list[tuple[dict[str, Any], str]] = [
+    ({"type": "set", "params": {"yaw": 181}}, "yaw"),
+    ({"type": "set", "params": {"yaw": "east"}}, "yaw"),
+    ({"type": "set", "params": {"yaw": None}}, "yaw"),
+    ({"type": "set", "params": {"yaw": [1]}}, "yaw"),
+    ({"type": "set", "params": {"yaw": 10**400}}, "yaw"),
+    ({"type": "set", "params": {"order": "abc"}}, "order"),
+    ({"type": "set", "params": {"order": {"a": {"b": 1}}}}, "order"),
+    ({"type": "set", "params": {"colour": "red"}}, "colour"),
+    ({"type": "set", "params": {"__class__": 1}}, "__class__"),
+    ({"type": "set", "params": {"model_config": {}}}, "model_config"),
+    ({"type": "set", "params": {"x" * 5000: 1}}, "x"),
+    ({"type": "action", "name": "explode"}, "explode"),
+    ({"type": "action", "name": "__init__"}, "__init__"),
+    ({"type": "handle", "name": "/nothing", "x": 1, "y": 2}, "/nothing"),
+]
+
+
+@pytest.mark.parametrize(("message", "named"), REFUSED, ids=lambda v: str(v)[:60])
+def test_bad_values_are_refused_in_words_and_the_state_stays(page: Page, message: dict[str, Any], named: str) -> None:
+    before = page.params
+    page.tell(message)
+    page.until(lambda: page.errors, "what is wrong")
+    assert named in page.errors[0]
+    assert len(page.errors[0]) < 500
+    page.settle()
+    assert page.params == before
+    page.works()
+
+
+def test_a_second_greeting_changes_nothing(page: Page) -> None:
+    greeting = {"dark": True, "reduced": True, "width": 100, "controls": False, "query": "yaw=99"}
+    page.tell({"type": "hello", **greeting})
+    page.settle()
+    assert page.params["yaw"] == 30.0
+    page.works()
+
+
+@pytest.mark.parametrize("data", [b"bytes", "x" * 20_000, "ü" * 10_000])
+def test_binary_and_huge_frames_end_the_channel(local: Local, page: Page, data: str | bytes) -> None:
+    before = local.refusals["size or kind"]
+    page.channel.send(data)
+    assert closed(page.channel) == 1009
+    local.refused("size or kind", before)
+
+
+# ---- without a key
+
+
+def test_who_only_watches_may_send_nonsense_too(local: Local, learner: Page) -> None:
+    with Page(local.url, room=learner.room) as watcher:
+        before = local.refusals["message"]
+        for data in garbage():
+            watcher.viser.send(data)
+        local.refused("message", before)
+        before = local.refusals["watching"]
+        for label, value in (("Yaw", 5.0), ("Reset", True), ("Order", "XYZ")):
+            watcher.move(label, value)
+        watcher.send(DRAG)
+        local.refused("watching", before + 3)
+        watcher.settle()
+        assert watcher.params["order"] == "zyx"
+    learner.works()
+
+
+def test_without_a_key_nobody_opens_rooms(local: Local) -> None:
+    """Otherwise whoever wishes could fill the server."""
+    before = local.sessions
+    for _ in range(5):
+        room = room_of(new_key())
+        assert local.http.get(f"/sims/{SLUG}/s/{room}/").status_code in (200, 404)
+        channel = connect(f"{local.url}/sims/{SLUG}/s/{room}/channel", viser=False)
+        greeting = {"dark": False, "reduced": False, "width": 900, "controls": True, "query": ""}
+        channel.send(json.dumps({"type": "hello", **greeting}))
+        time.sleep(0.05)
+        assert local.sessions == before
+        channel.close()
+
+
+# ---- too much
+
+
+def pour(send: Callable[[], object], count: int) -> None:
+    """Send as fast as it goes, until the server has enough."""
+    with suppress(ConnectionClosed):
+        for _ in range(count):
+            send()
+
+
+def test_a_flood_is_thinned_and_then_cut_off(local: Local, page: Page, learner: Page) -> None:
+    before = local.refusals["rate"]
+    camera = encode_message(camera_message())
+    pour(lambda: page.viser.send(camera), 10_000)
+    local.refused("rate", before + 1000)
+    learner.works()
+    assert closed(page.viser) == 1008
+
+
+def test_a_flood_of_the_channel_is_thinned_and_then_cut_off(local: Local, page: Page, learner: Page) -> None:
+    before = local.refusals["rate"]
+    pour(lambda: page.channel.send('{"type": "get"}'), 10_000)
+    local.refused("rate", before + 1000)
+    learner.works()
+    assert closed(page.channel) == 1008
+
+
+def test_fast_sliders_are_not_a_flood_and_the_last_value_arrives(local: Local, page: Page) -> None:
+    before = local.refusals
+    for k in range(300):
+        page.move("Yaw", k / 2)
+    page.until(lambda: page.params["yaw"] == 149.5, "the last value")
+    assert local.refusals == before
+
+
+def test_a_page_that_does_not_read_holds_nobody_up(local: Local, learner: Page) -> None:
+    with Page(local.url) as teacher:
+        idle = [connect(f"{teacher.address}?viewer=idle{k:06}", viser=True) for k in range(5)]
+        for socket_ in idle:
+            socket_.send(encode_message(camera_message()))
+        for _ in range(3):
+            for k in range(80):
+                teacher.move("Yaw", float(k))
+            teacher.works()
+        learner.works()
+        for socket_ in idle:
+            socket_.close()
+
+
+# ---- connections that break
+
+
+def raw(local: Local, sent: bytes) -> socket.socket:
+    """A TCP connection on which something was said."""
+    connection = socket.create_connection(("127.0.0.1", int(local.url.rsplit(":", 1)[1])), timeout=5)
+    connection.sendall(sent)
+    return connection
+
+
+def handshake(path: str) -> bytes:
+    return (
+        f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        f"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
+        f"Sec-WebSocket-Protocol: {PROTOCOL}\r\n\r\n"
+    ).encode()
+
+
+def test_half_open_connections_do_no_harm(local: Local, learner: Page) -> None:
+    key = new_key()
+    path = f"/sims/{SLUG}/s/{room_of(key)}/{key}/"
+    starts = [b"", b"GET ", handshake(path)[:80], b"\x16\x03\x01\x02\x00", b"\x00" * 1000, handshake(path)]
+    held = [raw(local, start) for start in starts for _ in range(5)]
+    learner.works()
+    for connection in held:
+        connection.close()
+    learner.works()
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        b"\x82\x05hello",
+        b"\x8f\x80\x00\x00\x00\x00",
+        b"\xf2\x80\x00\x00\x00\x00",
+        b"\x82\xff" + b"\xff" * 12,
+        b"\x02\x80abcd",
+    ],
+    ids=["not masked", "unknown kind", "reserved bits", "endless", "never finished"],
+)
+def test_broken_websocket_frames_do_no_harm(local: Local, learner: Page, frame: bytes) -> None:
+    key = new_key()
+    for _ in range(3):
+        connection = raw(local, handshake(f"/sims/{SLUG}/s/{room_of(key)}/{key}/"))
+        assert b"101 Switching Protocols" in connection.recv(4096)
+        connection.sendall(frame)
+        learner.works()
+        connection.close()
+
+
+def test_connections_that_break_off_leave_no_viewer(local: Local, learner: Page) -> None:
+    with Page(local.url) as teacher:
+        session = local.app.state.sessions.find(_sim(), teacher.room)
+        for _ in range(5):
+            other = Page(local.url, room=teacher.room)
+            for end in (other.viser, other.channel):
+                linger = struct.pack("ii", 1, 0)  # close means reset
+                end.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
+                end.socket.close()
+        wait_for(lambda: (len(session.viewers), len(session.listeners)) == (1, 1), "the broken ones to be forgotten")
+        teacher.works()
+    learner.works()
+
+
+def _sim() -> Any:
+    from sims import by_slug
+
+    return by_slug(SLUG)
+
+
+def alive(kind: type) -> int:
+    """How many objects of a kind there are."""
+    gc.collect()
+    return sum(type(o) is kind for o in gc.get_objects())
+
+
+def test_pages_that_went_leave_nothing_behind(local: Local, learner: Page) -> None:
+    learner.settle()
+    before = {kind: alive(kind) for kind in (Viewer, Wire, bridge.Visit, bridge.Link)}
+    for _ in range(10):
+        Page(local.url).close()
+    wait_for(lambda: before == {kind: alive(kind) for kind in before}, "what the pages had to be freed")
+    assert not [v for v in local.app.state.bridge._visits.values() if v.sockets < 1]
+
+
+# ---- the server as a process of its own
+
+
+def test_memory_stays_flat_and_the_log_stays_clean() -> None:
+    """Opens, closes and abuse; what the server prints is checked when it ends."""
+    with Server() as server, Page(server.url) as learner:
+        chance = random.Random(9)
+
+        def abuse(rounds: int) -> float:
+            for _ in range(rounds):
+                with Page(server.url) as page:
+                    page.move("Yaw", float(chance.randrange(90)))
+                    page.viser.send(chance.randbytes(chance.randrange(1, 5000)))
+                    page.tell({"type": "set", "params": {"yaw": "x" * chance.randrange(5000)}})
+                    page.move("Order", 17)
+                    page.settle()
+            learner.works()
+            return server.memory()
+
+        warm = abuse(25)
+        assert abuse(50) - warm < 12.0, "megabytes"
+        learner.works()
+
+
+def test_a_killed_server_goes_on_where_the_page_was() -> None:
+    with Server() as server:
+        page = Page(server.url, "yaw=12&order=xyz")
+        page.move("Yaw", 77.0)
+        page.until(lambda: page.params["yaw"] == 77.0, "the state to follow")
+        query = page.states[-1]["query"]
+        server.restart(hard=True)
+        page.close()
+        with Page(server.url, room=page.room) as watcher:
+            again = Page(server.url, query, key=page.key)
+            watcher.until(lambda: watcher.params == again.params, "the watcher to follow")
+            assert again.params == page.params
+            again.works()
+            again.close()
