@@ -22,12 +22,12 @@ import viser
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from app.messages import decoder
+from app.messages import GuiUpdateMessage, decoder
 from app.session import Full, Session, Sessions, refusal
 from sims.kit.params import BadParams
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
-from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
+from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire, takes
 
 log = logging.getLogger("sim3")
 LARGEST_MESSAGE = 16 * 1024
@@ -117,6 +117,10 @@ class Link:
     visit: Visit
     viewer: Viewer | None = None
 
+    def takes(self, message: GuiUpdateMessage) -> bool:
+        """Whether the value fits the control, if the page has it."""
+        return self.viewer is None or takes(self.viewer.client, message.uuid, message.updates.value)
+
 
 class Bridge:
     """Connects browsers to sessions."""
@@ -144,12 +148,15 @@ class Bridge:
         link = Link(visit)
         wire = Wire(send, link)
         serving = asyncio.create_task(self.host.connect(wire))
-        code = 1000
+        pumping = asyncio.create_task(self._pump(ws, wire, link))
+        code = 1013
         try:
-            code = await self._pump(ws, wire, visit)
+            await asyncio.wait((serving, pumping), return_when=asyncio.FIRST_COMPLETED)
+            code = pumping.result() if pumping.done() else code
         finally:
             wire.hang_up()
-            await asyncio.gather(serving, return_exceptions=True)
+            pumping.cancel()
+            await asyncio.gather(serving, pumping, return_exceptions=True)
             session = self.sessions.find(sim, room)
             if session is not None and link.viewer is not None:
                 session.leave(viewer=link.viewer)
@@ -158,7 +165,7 @@ class Bridge:
                 with contextlib.suppress(WebSocketDisconnect, RuntimeError):
                     await ws.close(code)
 
-    async def _pump(self, ws: WebSocket, wire: Wire, visit: Visit) -> int:
+    async def _pump(self, ws: WebSocket, wire: Wire, link: Link) -> int:
         bucket = Bucket()
         while not wire.closed.is_set():
             event = await ws.receive()
@@ -180,8 +187,11 @@ class Bridge:
                 if self.bad(bucket):
                     return 1008
                 continue
-            if visit.watching and message.commands:
+            if link.visit.watching and message.commands:
                 self.refusals["watching"] += 1
+                continue
+            if isinstance(message, GuiUpdateMessage) and not link.takes(message):
+                self.refusals["value"] += 1
                 continue
             wire.feed(data, message.value_of)
         return 1000
@@ -204,7 +214,7 @@ class Bridge:
             return
         hello = visit.hello.result() if visit.hello.done() else Hello(False, False, 1280, True, "")
         try:
-            session = self.sessions.open(visit.sim, visit.room, visit.sim.params())
+            session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=visit.watching)
             look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching)
             link.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)
@@ -270,7 +280,7 @@ class Bridge:
         if not visit.watching:
             with contextlib.suppress(BadParams):
                 params = visit.sim.params.from_query(parse_qsl(hello.query, keep_blank_values=True))
-        session = self.sessions.open(visit.sim, visit.room, params)
+        session = self.sessions.open(visit.sim, visit.room, params, watching=visit.watching)
         session.reduced_motion = session.reduced_motion or hello.reduced
         if not visit.hello.done():
             visit.hello.set_result(hello)

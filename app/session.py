@@ -22,7 +22,7 @@ from pydantic import ValidationError
 
 from app.motion import play
 from geometry import GeometryError
-from sims.kit.params import Params
+from sims.kit.params import Params, clipped
 from sims.kit.sim import Sim, Step
 from sims.kit.viewer import Viewer
 
@@ -52,6 +52,14 @@ class Session:
         self._told_at = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self.reduced_motion = False
+        self.waiting = False
+        """Only people who watch have come so far."""
+
+    def begin(self, params: Params) -> None:
+        """Somebody with control comes to a room that was waiting, and brings its state."""
+        self.waiting = False
+        self.initial = params
+        self._set(params)
 
     def change(self, changes: Mapping[str, Any], *, live: bool = True) -> None:
         """Take changes from a control (kept within bounds) or, not live, from a link or message (refused if bad).
@@ -201,15 +209,18 @@ class Sessions:
         """The running session of a room."""
         return self._by_room.get((sim.slug, room))
 
-    def open(self, sim: Sim[Any, Any], room: str, params: Params) -> Session:
-        """The session of a room, begun with `params` if it isn't running. Raises `Full`."""
+    def open(self, sim: Sim[Any, Any], room: str, params: Params, *, watching: bool = False) -> Session:
+        """The session of a room, begun with `params` if nobody with control has been there. Raises `Full`."""
         session = self.find(sim, room)
         if session is None:
             self.sweep()
             if len(self._by_room) >= self._limit:
                 raise Full
             session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
+            session.waiting = watching
             self.counts["opened"] += 1
+        elif session.waiting and not watching:
+            session.begin(params)
         return session
 
     def sweep(self) -> None:
@@ -242,4 +253,4 @@ def is_room(name: str) -> bool:
 def refusal(error: ValidationError) -> str:
     """A validation error in one line for people."""
     item = error.errors()[0]
-    return f"{'.'.join(str(p) for p in item['loc'])}: {item['msg']}".removeprefix(": ")
+    return f"{clipped('.'.join(str(p) for p in item['loc']))}: {item['msg']}".removeprefix(": ")

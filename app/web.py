@@ -5,12 +5,15 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
+import fastapi_offline  # carries Swagger UI, so that /docs needs no other host
 from fastapi import FastAPI, HTTPException, Request, WebSocket
 from fastapi.encoders import jsonable_encoder
 from fastapi.exceptions import RequestValidationError
+from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import GZipMiddleware
@@ -41,7 +44,8 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         sessions.close()
 
     app = FastAPI(
-        title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan, redoc_url=None,
+        title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan,
+        docs_url=None, redoc_url=None,
     )  # fmt: skip
     # uvicorn's own setting would put the prefix before every path, though not every proxy takes it away.
     app.root_path = settings.root_path
@@ -53,6 +57,19 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     _add_pages(app, sessions)
     _add_api(app)
     _add_sockets(app, bridge)
+
+    app.mount("/swagger", StaticFiles(directory=Path(fastapi_offline.__file__).parent / "static"), name="swagger")
+
+    @app.get("/docs", response_class=HTMLResponse, include_in_schema=False)
+    async def docs(request: Request) -> Response:
+        here = pages.base(request)
+        return get_swagger_ui_html(
+            openapi_url=f"{here}/openapi.json",
+            title="Sim3 API",
+            swagger_js_url=f"{here}/swagger/swagger-ui-bundle.js",
+            swagger_css_url=f"{here}/swagger/swagger-ui.css",
+            swagger_favicon_url=pages.static(request, "icons/sim3.svg"),
+        )
 
     @app.get("/healthz", include_in_schema=False)
     async def healthz() -> dict[str, Any]:

@@ -357,7 +357,7 @@ SIM = Sim(
     slug="euler-angles",
     title="Euler angles",
     summary="Turn an aircraft three times, see each turn in its own frame, and read the one rotation they make.",
-    concepts=("Euler Angles", "Gimbal Lock"),
+    concepts=("Euler angles", "Gimbal lock"),
     objectives=(
         Objective("Predict the orientation that three turns in a given order produce", "Apply"),
         Objective(
@@ -371,7 +371,7 @@ SIM = Sim(
     scene=EulerScene,
     readouts=readouts,
     describe=describe,
-    view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.75),
+    view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.9),
     actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),
     states={
         "zero": {"yaw": 0, "pitch": 0, "roll": 0},

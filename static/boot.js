@@ -15,10 +15,15 @@
   const view = given.get("view")?.split(",").map(Number) ?? sim.view;
   const eye = view.slice(0, 3);
   const target = view.slice(3);
+  const phone = innerWidth <= 576;
+  const narrow = innerWidth < 900;
+  const right = phone || given.get("controls") === "0" ? 0 : narrow ? 300 : 340;
+  const left = sim.panes && !narrow ? 330 : 0;
+  document.documentElement.style.setProperty("--s3-right", `${right}px`);
+  document.documentElement.style.setProperty("--s3-left", `${left}px`);
+  document.documentElement.dataset.controls = given.get("controls") ?? "1";
   if (!given.get("view")) {
-    const phone = innerWidth <= 576;
-    const panel = phone || given.get("controls") === "0" ? 0 : innerWidth < 900 ? 300 : 340 + (sim.panes ? 330 : 0);
-    const width = innerWidth - panel;
+    const width = innerWidth - left - right;
     const height = phone ? innerHeight * 0.55 : innerHeight;
     const half = Math.tan(0.35) * Math.min(1, width / height) * (height / innerHeight);
     const distance = Math.hypot(...eye.map((v, i) => v - target[i]));

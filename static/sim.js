@@ -67,6 +67,7 @@ function receive(message) {
     showAddress();
     speak(message.text);
     describeScene(message.text);
+    goLive();
     post({ type: "sim3:state", params: message.params, query });
   } else if (message.type === "error") {
     notify("⚠ " + message.message);
@@ -268,8 +269,7 @@ const still = element("div", { class: "s3-still", "aria-hidden": "true" });
 still.style.backgroundImage = `url(${sim.still[sim.dark ? "dark" : "light"]})`;
 
 function goLive() {
-  if (sim.live || !state || !document.querySelector("canvas")) return;
-  if (kept.get("controls") !== "0" && !document.querySelector(".s3-readouts")) return;
+  if (sim.live || !state || !document.querySelector("canvas") || !document.querySelector("[data-s3-drawn]")) return;
   sim.live = true;
   showAddress();
   still.remove();

@@ -46,11 +46,19 @@ def aircraft() -> dict[str, trimesh.Trimesh]:
     return {"hull": hull, "mark": mark}
 
 
-@lru_cache(maxsize=1)
-def camera() -> dict[str, trimesh.Trimesh]:
-    """A camera about 0.3 long that looks along +Z with y down, its centre of projection at the origin: `body`, `lens`."""
+@lru_cache(maxsize=3)
+def camera(bands: int = 0) -> dict[str, trimesh.Trimesh]:
+    """A camera about 0.3 long that looks along +Z with y down, its centre of projection at the origin.
+
+    `body`, `lens`, and with one or two bands round the body also `mark`, which tells cameras apart.
+    """
     body = _moved(box((0.24, 0.16, 0.16)), (0.0, 0.0, -0.12))
     bump = _moved(box((0.1, 0.05, 0.09)), (0.0, -0.1, -0.12))
     barrel = _moved(cylinder(radius=0.062, height=0.1, sections=32), (0.0, 0.0, 0.0))
     rim = _moved(cylinder(radius=0.07, height=0.02, sections=32), (0.0, 0.0, 0.05))
-    return {"body": _joined([body, bump]), "lens": _joined([barrel, rim])}
+    parts = {"body": _joined([body, bump]), "lens": _joined([barrel, rim])}
+    if bands:
+        parts["mark"] = _joined(
+            [_moved(box((0.02, 0.168, 0.168)), (0.1 - 0.045 * k, 0.0, -0.12)) for k in range(bands)]
+        )
+    return parts

@@ -53,7 +53,9 @@ class Params(BaseModel):
         if value is None:
             return None
         if isinstance(value, tuple):
-            return tuple(min(max(v, low), high) for v, (low, high) in zip(value, self._ranges(name, value), strict=False))
+            return tuple(
+                min(max(v, low), high) for v, (low, high) in zip(value, self._ranges(name, value), strict=False)
+            )
         low, high = self.bounds(name)
         return min(max(value, low), high)
 

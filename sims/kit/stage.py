@@ -52,6 +52,27 @@ class Node:
         set_visible(self.handle, visible)
 
 
+class Solid(Node):
+    """A body that can be stretched."""
+
+    _scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def scale(self, x: float, y: float | None = None, z: float | None = None) -> None:
+        """Stretch it along its own axes; one number for all three."""
+        factors = (x, x if y is None else y, x if z is None else z)
+        if factors != self._scale:
+            self._scale = factors
+            set_property(self.handle, "scale", factors)
+
+
+class Cloud(Node):
+    """Many dots of one colour."""
+
+    def points(self, points: npt.NDArray[np.float64]) -> None:
+        """Move the dots to places of shape (n, 3)."""
+        set_property(self.handle, "points", points.astype(np.float32))
+
+
 class Lines(Node):
     """Separate straight pieces; dashes are pieces too."""
 
@@ -214,30 +235,30 @@ class Stage:
     def mesh(
         self, name: str, body: trimesh.Trimesh, role: str | tuple[int, int, int], *, opacity: float | None = None,
         side: Any = "front", flat: bool = False,
-    ) -> Node:  # fmt: skip
+    ) -> Solid:  # fmt: skip
         """A solid body in one colour."""
         color = role if isinstance(role, tuple) else self.palette.surface(role)
         handle = self.scene.add_mesh_simple(
             name, vertices=body.vertices, faces=body.faces, color=color, opacity=opacity, side=side,
             flat_shading=flat, cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        return Node(handle)
+        return Solid(handle)
 
-    def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None) -> Node:
+    def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None) -> Solid:
         """A small sphere."""
         handle = self.scene.add_icosphere(
             name, radius=radius, subdivisions=3, color=self.palette.surface(role), opacity=opacity,
             cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        return Node(handle)
+        return Solid(handle)
 
-    def cloud(self, name: str, points: npt.NDArray[np.float64], role: str, *, size: float = 0.01) -> Node:
+    def cloud(self, name: str, points: npt.NDArray[np.float64], role: str, *, size: float = 0.01) -> Cloud:
         """Many small dots of one colour, sent as float32."""
         handle = self.scene.add_point_cloud(
             name, points=points.astype(np.float32), colors=self.palette.surface(role), point_size=size,
             point_shape="circle", precision="float32",
         )  # fmt: skip
-        return Node(handle)
+        return Cloud(handle)
 
     def grip(self, name: str, radius: float, role: str = "held") -> Node:
         """A ball with a ring halo that the pointer can drag; the session hears of it under `name`.

@@ -91,7 +91,8 @@ class Viewer:
             dark_mode=look.dark, show_logo=False, show_share_button=False, brand_color=ACCENT,
         )  # fmt: skip
         client.gui.set_panel_label(sim.title)
-        self._dock()
+        if look.controls:
+            self._dock()
         self._panes = self._add_panes()
         self._controls: list[Control] = []
         self._places: list[TypedPlace] = []
@@ -99,6 +100,7 @@ class Viewer:
         if look.controls:
             self._add_controls(params)
         self.scene = sim.scene(Stage(client, self.palette, self._dragged))
+        client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window as the first drawing
 
     def draw(self, params: Params, solution: Any) -> None:
         """Show a state; only what differs is sent, in one window."""

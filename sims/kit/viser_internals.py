@@ -151,6 +151,20 @@ def set_value(control: Any, value: Any) -> None:
         impl.gui_api._websock_interface.queue_message(_messages.GuiUpdateMessage(impl.uuid, {"value": value}))
 
 
+def takes(client: viser.ClientHandle, control: str, value: Any) -> bool:
+    """Whether a control's value may become this one; viser converts what it is sent, and fails where it can't."""
+    handle = client.gui._gui_input_handle_from_uuid.get(control)
+    return handle is None or _alike(handle.value, value)
+
+
+def _alike(old: Any, new: Any) -> bool:
+    if isinstance(old, tuple):
+        return isinstance(new, list) and len(new) == len(old) and all(map(_alike, old, new))
+    if isinstance(old, (bool, str)):
+        return type(new) is type(old)
+    return isinstance(new, (int, float)) and not isinstance(new, bool)
+
+
 def set_property(handle: Any, name: str, value: Any) -> None:
     """Assign a property of a node or control. The value must have the type that goes over the wire.
 

@@ -240,6 +240,10 @@ class Learner:
         wanted = [figure(v) for v in np.ravel(np.asarray(value, dtype=float)).tolist()]
         return [name, *wanted] in formulas
 
+    def spoken(self) -> str:
+        """What the live region says to those who listen."""
+        return self.frame.locator("[role=status][aria-live]").first.text_content() or ""
+
     def query(self) -> str:
         """The state in the address bar, without the page's own options."""
         query = urlsplit(self.address).query

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.e2e.conftest import Classroom
@@ -67,15 +66,63 @@ def shown_at_tips(learner: Learner, axes: str = "xyz") -> dict[str, Array]:
 
 
 def test_a_slider_turns_the_aircraft_from_hand_to_pixel(classroom: Classroom) -> None:
-    learner = classroom.open("euler-angles/embed")
-    agree(learner, yaw=30, pitch=20, roll=10)
+    learner = classroom.open("euler-angles/embed?yaw=60&pitch=-30")
+    agree(learner, yaw=60, pitch=-30, roll=10)
     before = shown_at_tips(learner)
 
     learner.slide("yaw", 110)
     learner.until(lambda: abs(learner.params["yaw"] - 110) < 8)
-    agree(learner, pitch=20, roll=10)
-    assert learner.params["yaw"] != 30
-    after = shown_at_tips(learner, "xz")
+    agree(learner, pitch=-30, roll=10)
+    shown_at_tips(learner, "xz")
     picture = Picture(learner)
     assert not picture.shows("x", before["x"]), f"the x axis is still where it was: {picture.around(before['x'])}"
-    assert np.linalg.norm(after["x"] - before["x"]) > 1
+
+
+def test_each_control_answers_to_keyboard_pointer_and_typing(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=45")
+
+    learner.press_keys("pitch", "ArrowRight", "ArrowRight", "ArrowLeft", "ArrowRight")
+    agree(learner, pitch=22)
+    learner.press_keys("roll", "Home")
+    agree(learner, roll=-180)
+    learner.press_keys("roll", "End", "ArrowLeft")
+    agree(learner, roll=179)
+    learner.type("yaw", "-120")
+    agree(learner, yaw=-120)
+
+    learner.choose("order", "xyz")
+    agree(learner, order="xyz", yaw=-120, pitch=22, roll=179)
+    learner.choose("frame", "extrinsic")
+    agree(learner, frame="extrinsic")
+    learner.choose("order", "zxz")
+    agree(learner, order="zxz")
+    names = {name: learner.label(name) for name in ("yaw", "pitch", "roll")}
+    assert names == {"yaw": "First α · Z (°)", "pitch": "Second β · X (°)", "roll": "Third γ · Z (°)"}
+    low, high = (learner.control("slider", "pitch").get_attribute(f"aria-value{end}") for end in ("min", "max"))
+    assert (low, high) == ("0", "180"), "a proper Euler order's second angle goes from 0° to 180°"
+
+    learner.press("Reset")
+    agree(learner, order="zyx", frame="intrinsic", yaw=45, pitch=20, roll=10, progress=3)
+
+    learner.slide("progress", 1.5)
+    learner.until(lambda: abs(learner.params["progress"] - 1.5) < 0.2)
+    agree(learner, yaw=45)
+    shown_at_tips(learner, "z")
+
+
+def test_gimbal_lock_is_said_and_shown(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=40&roll=-25")
+    learner.type("pitch", "90")
+    R = agree(learner, pitch=90)
+    np.testing.assert_allclose(R[2], [-1, 0, 0], atol=1e-12)
+    assert learner.solved()["locked"]
+    learner.frame.get_by_text("Gimbal lock: the first and third axes coincide").wait_for()
+    learner.until(lambda: "at gimbal lock" in learner.spoken())
+    shown_at_tips(learner, "z")
+
+    learner.type("pitch", "100")  # over the slider's end
+    agree(learner, pitch=90)
+    assert learner.control("textbox", "pitch").input_value() == "90"
+    learner.type("pitch", "not a number")
+    learner.type("yaw", "41")
+    agree(learner, yaw=41, pitch=90)

@@ -1,0 +1,50 @@
+"""A camera as it stands in a scene: body, letter, frustum and the picture in front of it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+import trimesh
+
+from sims.kit import bodies
+from sims.kit.stage import Stage
+from sims.kit.viser_internals import set_property
+
+BANDS = {"left": 1, "right": 2}
+PICTURE_WIDTH = 0.4
+"""Metres, in the scene; how far in front of the centre it stands follows from the focal length."""
+
+
+class CameraFigure:
+    """Everything that moves with one camera: place and turn `node`, and the rest follows."""
+
+    def __init__(self, stage: Stage, name: str, role: Literal["left", "right", "ink"], letter: str) -> None:
+        self.node = stage.group(name)
+        parts = bodies.camera(BANDS.get(role, 0))
+        grey = (70, 78, 88) if stage.palette.dark else (88, 96, 106)
+        self._solids = [
+            stage.mesh(f"{name}/body", parts["body"], role),
+            stage.mesh(f"{name}/lens", parts["lens"], grey),
+        ]
+        if "mark" in parts:
+            self._solids.append(stage.mesh(f"{name}/mark", parts["mark"], "page"))
+        self._edges = stage.lines(f"{name}/frustum", np.zeros((9, 3)), role, width=1.5)
+        flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
+        self._picture = stage.mesh(f"{name}/picture", flat, role, opacity=0.12, side="double", flat=True)
+        self._letter = stage.label(f"{name}/letter", letter)
+        self._corners = b""
+
+    def draw(self, corners: npt.NDArray[np.float64], size: float = 1.0) -> None:
+        """Show the picture's corners (4, 3), round it, in the camera's axes; `size` scales the body."""
+        for solid in self._solids:
+            solid.scale(size)
+        self._letter.pose(position=(0.0, -0.27 * size, -0.12 * size))
+        if corners.tobytes() != self._corners:
+            self._corners = corners.tobytes()
+            edges = np.zeros((8, 2, 3))
+            edges[:4, 1] = edges[4:, 0] = corners
+            edges[4:, 1] = np.roll(corners, -1, axis=0)
+            self._edges.pieces(edges)
+            set_property(self._picture.handle, "vertices", corners.astype(np.float32))

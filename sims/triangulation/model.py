@@ -1,0 +1,277 @@
+"""Parameters of the sim, and the mathematics of a state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Literal
+
+import numpy as np
+
+from geometry import triangulation as tri
+from geometry.arrays import Array
+from geometry.camera import Camera, parallel_rig
+from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
+from sims.kit.params import Params, choice, number, switch, vector
+
+Method = Literal["dlt", "midpoint", "optimal"]
+Pixel = tuple[float, float]
+METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
+    "dlt": tri.triangulate_dlt,
+    "midpoint": tri.triangulate_midpoint,
+    "optimal": tri.triangulate_optimal,
+}
+NAMES: dict[Method, str] = {"dlt": "DLT", "midpoint": "mid-point", "optimal": "optimal"}
+WIDTH, HEIGHT = 640, 480
+LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
+SAMPLES = 300
+LAST_SEED = 9999
+PICTURE_WIDTH = 0.4
+"""Metres that a picture is wide where it stands in the scene."""
+ROOMY = 0.25
+"""Metres of baseline below which cameras are drawn smaller, so that one doesn't stand in the other."""
+
+
+class TriangulationParams(Params):
+    """State of the sim."""
+
+    baseline: float = number(
+        0.6, 0.05, 2, step=0.01, unit="m", title="Baseline", symbol="b", description="Distance between the cameras"
+    )
+    focal: float = number(
+        600, 200, 1500, step=10, unit="px", title="Focal length", symbol="f", description="Of both cameras"
+    )
+    left_uv: Pixel = vector(
+        (410.0, 210.0), (0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v",
+        description="Where the point is in the left picture, before noise",
+    )  # fmt: skip
+    right_uv: Pixel = vector(
+        (320.0, 210.0), (0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v",
+        description="Where the point is in the right picture, before noise",
+    )  # fmt: skip
+    noise: float = number(
+        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
+        description="Standard deviation of Gaussian noise on both points; 0 is off",
+    )  # fmt: skip
+    seed: int = number(
+        0, 0, LAST_SEED, step=1, title="Sample", description="Seed of the noise: the same seed, the same noise",
+        control="number",
+    )  # fmt: skip
+    method: Method = choice(
+        "dlt", title="Method", description="Which reconstruction is the result",
+        labels={"dlt": "DLT (linear)", "midpoint": "Mid-point", "optimal": "Optimal (least error)"},
+    )  # fmt: skip
+    show_ellipsoid: bool = switch(
+        True, title="Show ellipsoid", description="The uncertainty of the result, three standard deviations wide"
+    )
+
+
+@dataclass(frozen=True)
+class MethodResult:
+    """What one method finds; pixels and errors of its point in both pictures."""
+
+    point: Array | None
+    status: str
+    reprojection_left: float | None = None
+    reprojection_right: float | None = None
+    reprojection_rms: float | None = None
+    pixel_left: Pixel | None = None
+    pixel_right: Pixel | None = None
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Both cameras, their F, and the corners of a picture in its camera's axes where it stands in the scene."""
+
+    left: Camera
+    right: Camera
+    F: Array
+    corners: Array
+    size: float
+
+
+@dataclass(frozen=True)
+class TriangulationSolution:
+    """What doesn't exist is None. `covariance` and what follows from it are for `sigma_px` pixels of noise."""
+
+    point: Array | None
+    status: str
+    by_method: Mapping[str, MethodResult]
+    ray_gap: float
+    closest_points: Array | None
+    disparity: float
+    depth_from_disparity: float | None
+    sigma_px: float
+    covariance: Array | None
+    ellipsoid_axes: Array | None
+    ellipsoid_directions: Array | None
+    depth_sigma: float | None
+    parallax_angle: float
+    in_front: bool
+    measured_left: Pixel
+    measured_right: Pixel
+    line_left: Array
+    line_right: Array
+    target: Array | None
+    """The point without noise, which the learner holds."""
+    true_point: Array | None
+    """The point that the pixels came from: with noise, and where the rays without it meet."""
+    cloud: Array
+    """What other noise of the same size would have given; empty without noise."""
+    sight_left: Pixel
+    sight_right: Pixel
+    """x and y of the lines of sight at depth 1, in each camera's axes."""
+
+
+def solve(p: TriangulationParams) -> TriangulationSolution:
+    """All the mathematics of a state."""
+    cameras = rig(p.baseline, p.focal)
+    left, right = measured(p)
+    found = {name: method(cameras.left, cameras.right, left, right) for name, method in METHODS.items()}
+    chosen, middle = found[p.method], found["midpoint"]
+    assert isinstance(middle, tri.Midpoint)
+    by_method = {name: _result(cameras, each, left, right) for name, each in found.items()}
+    point = by_method[p.method].point
+    disparity = float(tri.disparity(left, right))
+    target = point if p.noise == 0.0 else _point(METHODS[p.method](cameras.left, cameras.right, p.left_uv, p.right_uv))
+    return TriangulationSolution(
+        point=point,
+        status=by_method[p.method].status,
+        by_method=by_method,
+        ray_gap=float(middle.gap),
+        closest_points=_existing(middle.closest),
+        disparity=disparity,
+        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal))),
+        **_uncertainty(cameras, point, p.noise or 1.0),
+        parallax_angle=math.degrees(float(chosen.parallax)),
+        in_front=bool(chosen.in_front),
+        measured_left=left,
+        measured_right=right,
+        line_left=epipolar_line_left(cameras.F, right),
+        line_right=epipolar_line_right(cameras.F, left),
+        target=target,
+        true_point=target if p.noise > 0.0 and p.left_uv[1] == p.right_uv[1] else None,
+        cloud=cloud(p.baseline, p.focal, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
+        sight_left=_pair(cameras.left.normalized(left)),
+        sight_right=_pair(cameras.right.normalized(right)),
+    )
+
+
+@lru_cache(maxsize=256)
+def rig(baseline: float, focal: float) -> Rig:
+    """The cameras of a baseline in metres and a focal length in pixels."""
+    left, right = parallel_rig(baseline, focal)
+    size = min(baseline / ROOMY, 1.0)
+    upright = Camera(left.K, np.eye(4))
+    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * size * focal / WIDTH)
+    return Rig(left, right, fundamental(left, right), corners, size)
+
+
+def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
+    """The left and the right pixel with their noise."""
+    if p.noise == 0.0:
+        return p.left_uv, p.right_uv
+    (du, dv), (eu, ev) = _unit_noise(p.seed)
+    left, right, s = p.left_uv, p.right_uv, p.noise
+    return (left[0] + s * du, left[1] + s * dv), (right[0] + s * eu, right[1] + s * ev)
+
+
+@lru_cache(maxsize=1024)
+def _unit_noise(seed: int) -> tuple[Pixel, Pixel]:
+    left, right = tri.pixel_noise(1, seed)[0]
+    return _pair(left), _pair(right)
+
+
+NO_POINTS: Array = np.empty((0, 3))
+
+
+@lru_cache(maxsize=64)
+def cloud(baseline: float, focal: float, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
+    """Points (n, 3) that pixels with as much noise again would give, as far as they exist; none without noise."""
+    if noise == 0.0:
+        return NO_POINTS
+    cameras = rig(baseline, focal)
+    points = tri.monte_carlo(cameras.left, cameras.right, left, right, noise, SAMPLES, seed)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -> MethodResult:
+    status = tri.Status(int(found.status)).name.lower()
+    if status != "found":
+        return MethodResult(None, status)
+    at_left, at_right = (_pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
+    a, b = math.dist(at_left, left), math.dist(at_right, right)
+    return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
+
+
+def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, Any]:
+    names = ("covariance", "ellipsoid_axes", "ellipsoid_directions", "depth_sigma")
+    known = None if point is None else _existing(tri.covariance((cameras.left, cameras.right), point, sigma))
+    if known is None:
+        return {"sigma_px": sigma, **dict.fromkeys(names)}
+    lengths, directions = tri.ellipsoid_axes(known)
+    values = known, lengths, directions, math.sqrt(known.item(1, 1))
+    return {"sigma_px": sigma, **dict(zip(names, values, strict=True))}
+
+
+def _point(found: tri.Triangulation) -> Array | None:
+    return found.point if found.valid else None
+
+
+def _existing(array: Array) -> Array | None:
+    return array if math.isfinite(array.sum()) else None
+
+
+def _positive(value: float) -> float | None:
+    return value if value > 0.0 else None
+
+
+def _pair(array: Array) -> Pixel:
+    u, v = array.tolist()
+    return u, v
+
+
+# ---- what hands and buttons do
+
+
+def hold_point(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """Both pixels of a point in the world; it stays where both pictures show it."""
+    cameras = rig(p.baseline, p.focal)
+    x, y, z = place
+    in_front = (x, max(y, 1e-3), z)
+    (u, v), (other, _) = (_pair(camera.project(in_front)[0]) for camera in (cameras.left, cameras.right))
+    nearest = u - LAST[0]
+    other = max(other, nearest)
+    shift = max(-other, 0.0) + min(LAST[0] - u, 0.0)
+    v = min(max(v, 0.0), LAST[1])
+    return {"left_uv": (u + shift, v), "right_uv": (other + shift, v)}
+
+
+def hold_left(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """The left pixel."""
+    return {"left_uv": place[:2]}
+
+
+def hold_right(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """The right pixel."""
+    return {"right_uv": place[:2]}
+
+
+def held_point(p: TriangulationParams, s: TriangulationSolution) -> tuple[float, float, float] | None:
+    """The point without noise."""
+    if s.target is None:
+        return None
+    x, y, z = s.target.tolist()
+    return x, y, z
+
+
+def new_sample(p: TriangulationParams) -> dict[str, Any]:
+    """Noise of the next seed."""
+    return {"seed": (p.seed + 1) % (LAST_SEED + 1), "noise": p.noise or 1.0}
+
+
+def switch_noise(p: TriangulationParams) -> dict[str, Any]:
+    """Noise of one pixel, or none."""
+    return {"noise": 0.0 if p.noise else 1.0}
