@@ -214,7 +214,9 @@ class Bridge:
             return
         hello = visit.hello.result() if visit.hello.done() else Hello(False, False, 1280, True, "")
         try:
-            session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=visit.watching)
+            # A page whose first message is late may still bring its state.
+            silent = visit.watching or not visit.hello.done()
+            session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
             look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching)
             link.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)

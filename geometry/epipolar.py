@@ -5,12 +5,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Array, Components, components, norm, ratio, stack
+from .arrays import Array, Components, components, if_positive, norm, square_root, stack
 from .camera import Camera
 from .errors import GeometryError, as_array
 from .rotations import skew
 
-_NO_BASELINE = 1e-14  # of the centres' distance from the origin: rounding alone sets them that far apart
+_ROUNDING = 1e-14  # what arithmetic alone may leave of what ought to be zero, as part of its terms
 
 
 def baseline(left: Camera, right: Camera) -> Array:
@@ -20,7 +20,7 @@ def baseline(left: Camera, right: Camera) -> Array:
     """
     start, end = left.center, right.center
     between = end - start
-    if math.hypot(*between.tolist()) <= _NO_BASELINE * math.hypot(*start.tolist(), *end.tolist()):
+    if math.hypot(*between.tolist()) <= _ROUNDING * math.hypot(*start.tolist(), *end.tolist()):
         raise GeometryError("right", end.tolist(), "a camera whose centre isn't the left one's")
     return between
 
@@ -75,5 +75,7 @@ def epipolar_line_left(F: npt.ArrayLike, pixels_right: npt.ArrayLike) -> Array:
 def _lines(F: list[list[float]], pixel: Components) -> Array:
     u, v = pixel
     a, b, c = (row[0] * u + row[1] * v + row[2] for row in F)
-    length = (a * a + b * b) ** 0.5
-    return stack(ratio(a, length), ratio(b, length), ratio(c, length))
+    size = sum(abs(row[0] * u) + abs(row[1] * v) + abs(row[2]) for row in F[:2])
+    length = square_root(a * a + b * b)
+    length = length + 0.0 * if_positive(length - _ROUNDING * size)  # NaN where nothing but rounding is left
+    return stack(a / length, b / length, c / length)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .arrays import Array, Mask
 from .errors import GeometryError, as_array, as_choice, as_finite_array
-from .rotations import is_rotation, unit
+from .rotations import TOLERANCE, unit
 from .se3 import from_homogeneous
 
 DIRECTIONS = {
@@ -63,9 +63,10 @@ def _columns(*directions: str) -> Array:
 
 
 def handedness(axes: npt.ArrayLike) -> str:
-    """Return "right" or "left": the sign of the determinant of axes (3, 3) in columns, of any length.
+    """Return "right" or "left": the sign of the determinant of axes (3, 3) in columns.
 
-    Raises GeometryError if the axes lie in one plane, and have no handedness.
+    They needn't be perpendicular or of length one.
+    Raises GeometryError if they lie in one plane, and have no handedness.
     """
     matrix = as_finite_array("axes", axes, 3, 3)
     if matrix.ndim != 2:
@@ -111,7 +112,9 @@ def to_world(points: npt.ArrayLike, axes: npt.ArrayLike) -> Array:
 
 def _orthonormal(argument: str, value: npt.ArrayLike) -> Array:
     axes = as_array(argument, value, 3, 3)
-    sound = is_rotation(axes) | is_rotation(axes * (1.0, 1.0, -1.0))
+    with np.errstate(invalid="ignore", over="ignore"):
+        error = np.abs(axes.swapaxes(-1, -2) @ axes - np.eye(3))
+    sound: Mask = np.asarray((error <= TOLERANCE).all(axis=(-2, -1)))
     if axes.ndim == 2 and not sound:
         raise GeometryError(argument, axes.tolist(), "perpendicular axes of length one, in columns")
     return axes if sound.all() else np.where(sound[..., None, None], axes, np.nan)

@@ -46,7 +46,7 @@ def ring_axes(yaw: float | Array, pitch: float | Array) -> Array:
     """
     (cos, sin), (c, s) = cos_sin(as_angle("yaw", yaw)), cos_sin(as_angle("pitch", pitch))
     zero, one = 0.0 * (cos + c), 1.0 + 0.0 * (cos + c)
-    return stack_matrix(zero, -sin, c * cos, zero, cos, c * sin, one, zero, -s)
+    return stack_matrix(zero, -sin, c * cos, zero, cos, c * sin, one, zero, zero - s)
 
 
 def singular_values(pitch: float | Array) -> Array:
@@ -84,10 +84,11 @@ def ellipsoid(yaw: float | Array, pitch: float | Array) -> Ellipsoid:
     # The sum and the difference of outer and inner axis, without the factor that vanishes at lock.
     longer = square_root(0.5 + 0.5 * abs(s))
     shorter = 0.5 * _sign(s) * c / longer
+    level = 0.0 * sin
     directions = stack_matrix(
         *(shorter * cos, -sin, longer * cos),
         *(shorter * sin, cos, longer * sin),
-        *(-longer, 0.0 * sin, shorter),
+        *(level - longer, level, level + shorter),
     )
     return Ellipsoid(directions, singular_values(pitch))
 

@@ -1,8 +1,9 @@
 """Serial arms of revolute joints: postures, the Jacobian and how near it is to singular, reach, swapped links."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,9 +11,8 @@ import numpy.typing as npt
 
 from .arrays import Array, Components, Mask, components, cos_sin, cross, stack
 from .errors import GeometryError, as_angle, as_array, as_choice, as_finite_array, as_number
+from .gimbal import RANK, degrees_of_freedom
 from .rotations import AXES
-
-RANK = 1e-6  # of the largest singular value: one that isn't above it counts as zero
 
 _TURNS = {"x": (0, 1, 2), "y": (1, 2, 0), "z": (2, 0, 1)}  # an axis, and the two that it turns, first to second
 _GENERAL = ((0.4, 1.1, -0.7, 1.9, 0.9, -1.3, 2.3, 0.6), (-1.0, 0.8, 1.7, -0.5, 1.4, 2.1, -1.8, 0.3))
@@ -65,8 +65,8 @@ class Joint(NamedTuple):
     @property
     def transform(self) -> tuple[Any, ...]:
         """The sixteen entries, by rows, of the link's frame."""
-        rows = zip(self.x, self.y, self.z, self.end, strict=True)
-        return *(entry for row in rows for entry in row), 0.0, 0.0, 0.0, 1.0
+        (a, b, c), (d, e, f), (g, h, i), (x, y, z) = self.x, self.y, self.z, self.end
+        return a, d, g, x, b, e, h, y, c, f, i, z, 0.0, 0.0, 0.0, 1.0
 
     def velocity(self, point: Components) -> tuple[Any, Any, Any]:
         """How a point beyond the joint moves as the joint turns."""
@@ -98,16 +98,16 @@ class Chain:
         Raises GeometryError for an angle that isn't finite; in a batch it gives NaN.
         Source: Siciliano et al. 2009, "Robotics", sec. 2.7; for the geometric Jacobian, sec. 3.1.3.
         """
-        turns = components(as_array("angles", angles, len(self.axes)))
+        array = as_array("angles", angles, len(self.axes))
+        turns, batch = components(array), array.shape[:-1]
         links = list(zip(self.axes, self.lengths, turns, strict=True))
         joints, alone = walk(links), [walk([link])[0] for link in links]
-        n, end = len(joints), joints[-1].end
-        columns = [(*joint.velocity(end), *joint.axis) for joint in joints]
+        end = joints[-1].end
         return Posture(
-            individual=_stack((entry for joint in alone for entry in joint.transform), n, 4, 4),
-            composed=_stack((entry for joint in joints for entry in joint.transform), n, 4, 4),
-            positions=_stack((c for point in (joints[0].origin, *(j.end for j in joints)) for c in point), n + 1, 3),
-            jacobian=_stack((entry for column in columns for entry in column), n, 6).swapaxes(-1, -2),
+            individual=_stack(batch, [joint.transform for joint in alone], 4, 4),
+            composed=_stack(batch, [joint.transform for joint in joints], 4, 4),
+            positions=_stack(batch, [joints[0].origin, *(joint.end for joint in joints)], 3),
+            jacobian=_stack(batch, [(*joint.velocity(end), *joint.axis) for joint in joints], 6).swapaxes(-1, -2),
         )
 
     @property
@@ -162,9 +162,11 @@ def walk(links: Iterable[tuple[str, float, Any]]) -> list[Joint]:
     return joints
 
 
-def _stack(entries: Iterable[Any], *shape: int) -> Array:
-    flat = stack(*entries)
-    return flat.reshape(*flat.shape[:-1], *shape)
+def _stack(batch: tuple[int, ...], items: Sequence[Components], *shape: int) -> Array:
+    flat = stack(*chain.from_iterable(items))
+    if flat.shape[:-1] != batch:  # nothing of it depends on the angles
+        flat = np.broadcast_to(flat, (*batch, flat.size)).copy()
+    return flat.reshape(*batch, len(items), *shape)
 
 
 def dexterity(jacobian: npt.ArrayLike, mobility: int) -> Dexterity:
@@ -175,9 +177,9 @@ def dexterity(jacobian: npt.ArrayLike, mobility: int) -> Dexterity:
     Raises GeometryError for entries that aren't finite.
     Source: Yoshikawa 1985, "Manipulability of robotic mechanisms".
     """
-    values = np.linalg.svd(as_finite_array("jacobian", jacobian), compute_uv=False)
-    rank = (values > RANK * values[..., :1]).sum(axis=-1)
-    return Dexterity(values, np.asarray(values[..., :mobility].prod(axis=-1)), np.asarray(rank < mobility))
+    values: Array = np.asarray(np.linalg.svd(as_finite_array("jacobian", jacobian), compute_uv=False))
+    product = values[..., : max(mobility, 1)].prod(axis=-1)
+    return Dexterity(values, np.asarray(product), np.asarray(degrees_of_freedom(values) < mobility))
 
 
 @lru_cache(maxsize=256)

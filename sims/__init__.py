@@ -6,8 +6,9 @@ from typing import Any
 
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.kit.sim import Sim
+from sims.triangulation import SIM as TRIANGULATION
 
-SIMS: tuple[Sim[Any, Any], ...] = (EULER_ANGLES,)
+SIMS: tuple[Sim[Any, Any], ...] = (EULER_ANGLES, TRIANGULATION)
 
 
 def by_slug(slug: str) -> Sim[Any, Any] | None:

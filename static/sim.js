@@ -52,7 +52,7 @@ function connect() {
   socket.onclose = () => {
     socket = null;
     setTimeout(connect, retryAfter);
-    retryAfter = Math.min(retryAfter * 2, 4000);
+    retryAfter = Math.min(retryAfter * 2, 1500); // within the time that the server waits before it draws
   };
 }
 
@@ -207,6 +207,8 @@ function nameControls(root) {
     const row = control.parentElement;
     for (const part of row.querySelectorAll("[role=slider], input")) {
       if (part.getAttribute("aria-label") !== name) part.setAttribute("aria-label", name);
+      // viser leaves the number box of a disabled slider open.
+      if (sim.watching && part.disabled === false) part.disabled = true;
     }
   }
 }

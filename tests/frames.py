@@ -288,8 +288,11 @@ class SceneModel:
 
     def _seen(self, name: str) -> dict[str, Any]:
         node = self.node(name)
+        props = node.props
+        if "scale" in props:  # one number, or one an axis
+            props = {**props, "scale": np.broadcast_to(np.asarray(props["scale"], dtype=float), 3)}
         bound = {"drags": node.drags, "clicks": node.clicks}
-        return {"kind": node.kind, "pose": self.world_pose(name), "props": node.props, **bound}
+        return {"kind": node.kind, "pose": self.world_pose(name), "props": props, **bound}
 
     # ---- how each message is applied
 
@@ -393,7 +396,8 @@ def _bindings(message: Message) -> tuple[tuple[str, str | None], ...]:
 
 
 def _seen_element(element: GuiElement) -> dict[str, Any]:
-    props = {k: v for k, v in element.props.items() if k != "order"}
+    # How many decimals a box of numbers shows depends on the value at which its page was opened.
+    props = {k: v for k, v in element.props.items() if k not in ("order", "precision")}
     return {"kind": element.kind, "value": element.value, "props": props}
 
 

@@ -10,7 +10,6 @@ import trimesh
 
 from sims.kit import bodies
 from sims.kit.stage import Stage
-from sims.kit.viser_internals import set_property
 
 BANDS = {"left": 1, "right": 2}
 PICTURE_WIDTH = 0.4
@@ -47,4 +46,4 @@ class CameraFigure:
             edges[:4, 1] = edges[4:, 0] = corners
             edges[4:, 1] = np.roll(corners, -1, axis=0)
             self._edges.pieces(edges)
-            set_property(self._picture.handle, "vertices", corners.astype(np.float32))
+            self._picture.vertices(corners)

@@ -15,11 +15,14 @@ Point = Sequence[float]
 
 @dataclass(frozen=True)
 class Pane:
-    """One picture or plot: its name, a title that people see, and the SVG."""
+    """One picture or plot: its name, a title that people see, the SVG, and what is said beside the title."""
 
     name: str
     title: str
     svg: str
+    note: str = ""
+    wide: bool = False
+    """It takes the whole width where pictures stand side by side."""
 
 
 class Picture:
@@ -56,11 +59,12 @@ class Picture:
         self.line((x - size, y + size), (x + size, y - size), role, width=2.5)
 
     def dot(self, at: Point, role: str, radius: float = 6, *, hollow: bool = False) -> None:
-        """A round mark; hollow for what was measured before."""
+        """A round mark; hollow to show what is behind it."""
         fill = "none" if hollow else f"var(--{role})"
+        kind = "s3-hollow" if hollow else "s3-dot"
         self._parts.append(
-            f'<circle cx="{at[0]:.2f}" cy="{at[1]:.2f}" r="{radius}" fill="{fill}" stroke="var(--{role})"'
-            ' stroke-width="2" vector-effect="non-scaling-stroke"/>'
+            f'<circle class="{kind}" cx="{at[0]:.2f}" cy="{at[1]:.2f}" r="{radius}" fill="{fill}"'
+            f' stroke="var(--{role})" stroke-width="2" vector-effect="non-scaling-stroke"/>'
         )
 
     def text(self, at: Point, words: str, role: str = "ink", *, anchor: str = "start", size: float = 26) -> None:
@@ -77,11 +81,11 @@ class Picture:
             f' role="application" aria-roledescription="movable point"'
             f' aria-label="{escape(label)}: {at[0]:.1f}, {at[1]:.1f} pixels.'
             f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
-            '<circle class="s3-grab" r="36"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
+            '<circle class="s3-grab" r="44"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
             f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
         )
 
-    def pane(self) -> Pane:
+    def pane(self, note: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" class="s3-frame"/>'
@@ -95,7 +99,7 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}</svg>"
         )
-        return Pane(self.name, self.title, svg)
+        return Pane(self.name, self.title, svg, note)
 
 
 def across(line: Point, width: float, height: float) -> tuple[Point, Point] | None:
@@ -118,6 +122,8 @@ def across(line: Point, width: float, height: float) -> tuple[Point, Point] | No
 def render(panes: Sequence[Pane], style: str) -> str:
     """All panes of a sim as one piece of HTML; `style` carries the palette."""
     figures = "".join(
-        f'<figure class="s3-pane"><figcaption>{escape(p.title)}</figcaption>{p.svg}</figure>' for p in panes
+        f'<figure class="s3-pane{" s3-wide" if p.wide else ""}"><figcaption>{escape(p.title)}'
+        f"{f' <span>{escape(p.note)}</span>' if p.note else ''}</figcaption>{p.svg}</figure>"
+        for p in panes
     )
     return f'<div class="s3-panes" style="{style}">{figures}</div>'

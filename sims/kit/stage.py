@@ -53,16 +53,19 @@ class Node:
 
 
 class Solid(Node):
-    """A body that can be stretched."""
+    """A body, which can be stretched and bent."""
 
-    _scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    _scale: float | tuple[float, float, float] = 1.0
 
-    def scale(self, x: float, y: float | None = None, z: float | None = None) -> None:
-        """Stretch it along its own axes; one number for all three."""
-        factors = (x, x if y is None else y, x if z is None else z)
+    def scale(self, factors: float | tuple[float, float, float]) -> None:
+        """Stretch it: by one factor, or by one along each of its own axes."""
         if factors != self._scale:
             self._scale = factors
             set_property(self.handle, "scale", factors)
+
+    def vertices(self, vertices: npt.NDArray[np.float64]) -> None:
+        """Move the corners (n, 3) of its faces."""
+        set_property(self.handle, "vertices", vertices.astype(np.float32))
 
 
 class Cloud(Node):

@@ -1,0 +1,61 @@
+"""triangulation: a 3D point from its places in two pictures, and how sure it is.
+
+Two parallel cameras stand at a height of 1 m and look along +Y. Each picture gives a ray; three methods say where
+the rays meet, or nearly meet, and noise in the pixels says how far that may be from the truth.
+"""
+
+from __future__ import annotations
+
+from sims.kit.sim import Action, Objective, Sim, Typed, View
+from sims.triangulation import model
+from sims.triangulation.model import TriangulationParams, TriangulationSolution, solve
+from sims.triangulation.pictures import panes
+from sims.triangulation.scene import TriangulationScene
+from sims.triangulation.words import describe, readouts
+
+__all__ = ["SIM", "TriangulationParams", "TriangulationSolution", "solve"]
+
+SIM = Sim(
+    slug="triangulation",
+    title="Triangulation",
+    summary="Find a point in space from its places in two pictures, by three methods, and see how sure it is.",
+    concepts=("Triangulation", "Stereo Vision", "Uncertainty"),
+    objectives=(
+        Objective("Reconstruct a point from two pixels, and compare DLT, mid-point and optimal triangulation", "Apply"),
+        Objective("Explain how baseline, focal length and depth set the uncertainty of the depth", "Understand"),
+        Objective("Tell parallel and diverging rays from small errors, and say why they give no point", "Analyze"),
+    ),
+    params=TriangulationParams,
+    solve=solve,
+    scene=TriangulationScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((3.8, -0.9, 3.4), (0.1, 1.9, 0.75), 2.4),
+    panes=panes,
+    actions=(
+        Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", model.new_sample),
+        Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", model.switch_noise),
+    ),
+    handles={"/point": model.hold_point, "left_uv": model.hold_left, "right_uv": model.hold_right},
+    typed=(
+        Typed(
+            "/point", "3D point", "Sets both image points exactly, as dragging the point in the scene does",
+            (-20.0, 0.0, -20.0), (20.0, 100.0, 20.0), model.held_point,
+        ),
+    ),
+    states={
+        "rays miss": {"right_uv": (320, 222), "method": "optimal"},
+        "noise": {"noise": 1.0, "seed": 3},
+        "much noise": {"noise": 5.0, "baseline": 0.3, "method": "midpoint"},
+        "parallel rays": {"right_uv": (410, 210)},
+        "diverging rays": {"right_uv": (450, 210)},
+        "behind, rays miss": {"right_uv": (430, 225), "method": "optimal"},
+        "no disparity, rays miss": {"right_uv": (410, 214)},
+        "no disparity, rays miss, mid-point": {"right_uv": (410, 214), "method": "midpoint"},
+        "almost parallel": {"right_uv": (409.5, 210)},
+        "parallel to rounding": {"right_uv": (409.999999999, 210)},
+        "tiny baseline": {"baseline": 0.05, "left_uv": (357.5, 210), "right_uv": (350, 210), "noise": 0.5},
+        "near": {"left_uv": (639, 240), "right_uv": (0, 240)},
+        "noise makes rays parallel": {"right_uv": (409, 210), "noise": 5.0},
+    },
+)  # fmt: skip

@@ -30,8 +30,9 @@ SAMPLES = 300
 LAST_SEED = 9999
 PICTURE_WIDTH = 0.4
 """Metres that a picture is wide where it stands in the scene."""
-ROOMY = 0.25
-"""Metres of baseline below which cameras are drawn smaller, so that one doesn't stand in the other."""
+ROOMY = 0.43
+LARGEST = 1.4
+"""Cameras are drawn as large as the baseline (metres) has room for, up to so many times their own size."""
 
 
 class TriangulationParams(Params):
@@ -98,7 +99,7 @@ class TriangulationSolution:
 
     point: Array | None
     status: str
-    by_method: Mapping[str, MethodResult]
+    by_method: Mapping[Method, MethodResult]
     ray_gap: float
     closest_points: Array | None
     disparity: float
@@ -124,6 +125,16 @@ class TriangulationSolution:
     sight_right: Pixel
     """x and y of the lines of sight at depth 1, in each camera's axes."""
 
+    @property
+    def depth(self) -> float | None:
+        """How far in front of the cameras the point is."""
+        return None if self.point is None else float(self.point[1])
+
+    @property
+    def vague(self) -> bool:
+        """The point exists, but a standard deviation of its depth is as large as the depth."""
+        return self.depth is not None and (self.depth_sigma is None or self.depth_sigma >= self.depth)
+
 
 def solve(p: TriangulationParams) -> TriangulationSolution:
     """All the mathematics of a state."""
@@ -132,7 +143,7 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
     found = {name: method(cameras.left, cameras.right, left, right) for name, method in METHODS.items()}
     chosen, middle = found[p.method], found["midpoint"]
     assert isinstance(middle, tri.Midpoint)
-    by_method = {name: _result(cameras, each, left, right) for name, each in found.items()}
+    by_method: dict[Method, MethodResult] = {name: _result(cameras, each, left, right) for name, each in found.items()}
     point = by_method[p.method].point
     disparity = float(tri.disparity(left, right))
     target = point if p.noise == 0.0 else _point(METHODS[p.method](cameras.left, cameras.right, p.left_uv, p.right_uv))
@@ -163,7 +174,7 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
 def rig(baseline: float, focal: float) -> Rig:
     """The cameras of a baseline in metres and a focal length in pixels."""
     left, right = parallel_rig(baseline, focal)
-    size = min(baseline / ROOMY, 1.0)
+    size = min(baseline / ROOMY, LARGEST)
     upright = Camera(left.K, np.eye(4))
     corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * size * focal / WIDTH)
     return Rig(left, right, fundamental(left, right), corners, size)

@@ -77,7 +77,7 @@ class Local:
 
 class _Recorder(logging.Handler):
     def __init__(self, said: list[str]) -> None:
-        super().__init__(logging.WARNING)
+        super().__init__(logging.ERROR)
         self._said = said
 
     def emit(self, record: logging.LogRecord) -> None:

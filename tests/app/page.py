@@ -124,7 +124,7 @@ class Page:
         value = float(next(self._counter) % 90)
         self.move("Yaw", value)
         self.until(lambda: self.params["yaw"] == value, "the state to follow the slider")
-        self.until(lambda: f"yaw {value:.0f}°" in self.model.labels(shown_only=False).values(), "the scene to follow")
+        self.until(lambda: f"Rz({value:.0f}°)" in self.model.html(), "the read-outs to follow")
 
     @staticmethod
     def _receive(socket: ClientConnection, take: Callable[[Any], object]) -> None:

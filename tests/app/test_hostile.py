@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import gc
+import itertools
 import json
 import random
 import socket
-import struct
-import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Any
@@ -36,11 +35,26 @@ def learner(local: Local) -> Iterator[Page]:
         yield page
 
 
+@pytest.fixture(scope="module")
+def visitors(local: Local) -> Iterator[Callable[[], Page]]:
+    """Pages to misuse; each a few times only, for the server has little patience with one that makes no sense."""
+    pages: list[Page] = []
+    uses = itertools.count()
+
+    def visitor() -> Page:
+        if next(uses) % 12 == 0 or any(s.close_code for s in (pages[-1].viser, pages[-1].channel)):
+            pages.append(Page(local.url))
+        return pages[-1]
+
+    yield visitor
+    for page in pages:
+        page.close()
+
+
 @pytest.fixture
-def page(local: Local, learner: Page) -> Iterator[Page]:
+def visitor(visitors: Callable[[], Page], learner: Page) -> Iterator[Page]:
     """A page to misuse. When it has been, the learner's still works."""
-    with Page(local.url) as page:
-        yield page
+    yield visitors()
     learner.works()
 
 
@@ -56,26 +70,26 @@ def garbage() -> Iterator[bytes]:
 
 
 @pytest.mark.parametrize("data", list(garbage()), ids=lambda data: f"{len(data)} {data[:6].hex()}")
-def test_random_bytes_are_dropped_and_counted(local: Local, page: Page, data: bytes) -> None:
+def test_random_bytes_are_dropped_and_counted(local: Local, visitor: Page, data: bytes) -> None:
     before = local.refusals["message"]
-    page.viser.send(data)
+    visitor.viser.send(data)
     local.refused("message", before)
-    page.works()
+    visitor.works()
 
 
-def test_random_bytes_again_and_again_end_the_connection(local: Local, page: Page) -> None:
+def test_random_bytes_again_and_again_end_the_connection(local: Local, visitor: Page) -> None:
     chance = random.Random(8)
     with suppress(ConnectionClosed):
         for _ in range(200):
-            page.viser.send(chance.randbytes(50))
-    assert closed(page.viser) == 1008
+            visitor.viser.send(chance.randbytes(50))
+    assert closed(visitor.viser) == 1008
 
 
 @pytest.mark.parametrize("data", ["text", json.dumps(camera_message()), "", b"x" * 20_000, b"x" * 2_000_000])
-def test_text_and_huge_frames_end_the_connection(local: Local, page: Page, data: str | bytes) -> None:
+def test_text_and_huge_frames_end_the_connection(local: Local, visitor: Page, data: str | bytes) -> None:
     before = local.refusals["size or kind"]
-    page.viser.send(data)
-    assert closed(page.viser) == 1009
+    visitor.viser.send(data)
+    assert closed(visitor.viser) == 1009
     if len(data) < 1 << 20:  # uvicorn itself refuses larger ones
         local.refused("size or kind", before)
 
@@ -108,12 +122,12 @@ FORBIDDEN = [
 
 
 @pytest.mark.parametrize("message", FORBIDDEN, ids=lambda m: str(m["type"])[:30])
-def test_other_types_of_messages_do_not_reach_viser(local: Local, page: Page, message: dict[str, Any]) -> None:
+def test_other_types_of_messages_do_not_reach_viser(local: Local, visitor: Page, message: dict[str, Any]) -> None:
     before = local.refusals["message"]
-    page.send(message)
+    visitor.send(message)
     local.refused("message", before)
-    page.works()
-    assert "ShareUrlUpdated" not in page.model.latest
+    visitor.works()
+    assert "ShareUrlUpdated" not in visitor.model.latest
 
 
 DRAG = {
@@ -138,11 +152,11 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("message", BROKEN.values(), ids=BROKEN.keys())
-def test_messages_with_wrong_fields_are_dropped(local: Local, page: Page, message: dict[str, Any]) -> None:
+def test_messages_with_wrong_fields_are_dropped(local: Local, visitor: Page, message: dict[str, Any]) -> None:
     before = local.refusals["message"]
-    page.send(message)
+    visitor.send(message)
     local.refused("message", before)
-    page.works()
+    visitor.works()
 
 
 UPDATES: list[Any] = [
@@ -169,12 +183,12 @@ UPDATES: list[Any] = [
 
 
 @pytest.mark.parametrize("updates", UPDATES, ids=lambda u: str(u)[:30])
-def test_a_control_takes_nothing_but_a_value(local: Local, page: Page, updates: Any) -> None:
+def test_a_control_takes_nothing_but_a_value(local: Local, visitor: Page, updates: Any) -> None:
     before = local.refusals["message"]
-    page.send({"type": "GuiUpdateMessage", "uuid": page.model.control("Yaw").uuid, "updates": updates})
+    visitor.send({"type": "GuiUpdateMessage", "uuid": visitor.model.control("Yaw").uuid, "updates": updates})
     local.refused("message", before)
-    page.works()
-    assert not page.model.control("Yaw").props["disabled"]
+    visitor.works()
+    assert not visitor.model.control("Yaw").props["disabled"]
 
 
 # ---- messages that pass and make no sense
@@ -199,12 +213,21 @@ ODD_VALUES = [
 ]
 
 
-@pytest.mark.parametrize("value", ODD_VALUES, ids=str)
 @pytest.mark.parametrize("label", ["Yaw", "Order", "Frame", "Animate", "Reset", "Parameters"])
-def test_a_control_survives_a_value_of_another_kind(page: Page, label: str, value: Any) -> None:
-    page.move(label, value)
-    page.works()
-    assert -180.0 <= page.params["yaw"] <= 180.0
+def test_a_control_survives_values_of_other_kinds(visitor: Page, label: str) -> None:
+    for value in ODD_VALUES:
+        visitor.move(label, value)
+    visitor.works()
+    assert -180.0 <= visitor.params["yaw"] <= 180.0
+
+
+@pytest.mark.parametrize(
+    ("label", "value"), [("Yaw", "5"), ("Yaw", True), ("Yaw", [5.0]), ("Order", 5), ("Reset", 1.0), ("Animate", "yes")]
+)
+def test_a_value_of_another_kind_is_counted(local: Local, visitor: Page, label: str, value: Any) -> None:
+    before = local.refusals["value"]
+    visitor.move(label, value)
+    local.refused("value", before)
 
 
 SENSELESS = {
@@ -234,10 +257,10 @@ SENSELESS = {
 
 
 @pytest.mark.parametrize("message", SENSELESS.values(), ids=SENSELESS.keys())
-def test_messages_without_sense_do_no_harm(page: Page, message: dict[str, Any]) -> None:
-    page.send(message)
-    page.send(message)
-    page.works()
+def test_messages_without_sense_do_no_harm(visitor: Page, message: dict[str, Any]) -> None:
+    visitor.send(message)
+    visitor.send(message)
+    visitor.works()
 
 
 # ---- the channel
@@ -312,11 +335,11 @@ AFTER_HELLO: list[str] = [
 
 
 @pytest.mark.parametrize("text", AFTER_HELLO, ids=lambda text: f"{len(text)} {text[:40]}")
-def test_nonsense_on_the_channel_is_dropped_and_counted(local: Local, page: Page, text: str) -> None:
+def test_nonsense_on_the_channel_is_dropped_and_counted(local: Local, visitor: Page, text: str) -> None:
     before = local.refusals["channel"]
-    page.channel.send(text)
+    visitor.channel.send(text)
     local.refused("channel", before)
-    page.works()
+    visitor.works()
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
@@ -338,30 +361,33 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("message", "named"), REFUSED, ids=lambda v: str(v)[:60])
-def test_bad_values_are_refused_in_words_and_the_state_stays(page: Page, message: dict[str, Any], named: str) -> None:
-    before = page.params
-    page.tell(message)
-    page.until(lambda: page.errors, "what is wrong")
-    assert named in page.errors[0]
-    assert len(page.errors[0]) < 500
-    page.settle()
-    assert page.params == before
-    page.works()
+def test_bad_values_are_refused_in_words_and_the_state_stays(
+    visitor: Page, message: dict[str, Any], named: str
+) -> None:
+    before, told = visitor.params, len(visitor.errors)
+    visitor.tell(message)
+    visitor.until(lambda: len(visitor.errors) > told, "what is wrong")
+    assert named in visitor.errors[-1]
+    assert len(visitor.errors[-1]) < 500
+    visitor.settle()
+    assert visitor.params == before
+    visitor.works()
 
 
-def test_a_second_greeting_changes_nothing(page: Page) -> None:
+def test_a_second_greeting_changes_nothing(visitor: Page) -> None:
     greeting = {"dark": True, "reduced": True, "width": 100, "controls": False, "query": "yaw=99"}
-    page.tell({"type": "hello", **greeting})
-    page.settle()
-    assert page.params["yaw"] == 30.0
-    page.works()
+    before = visitor.params
+    visitor.tell({"type": "hello", **greeting})
+    visitor.settle()
+    assert visitor.params == before
+    visitor.works()
 
 
-@pytest.mark.parametrize("data", [b"bytes", "x" * 20_000, "ü" * 10_000])
-def test_binary_and_huge_frames_end_the_channel(local: Local, page: Page, data: str | bytes) -> None:
+@pytest.mark.parametrize("data", [b"bytes", "x" * 20_000])
+def test_binary_and_huge_frames_end_the_channel(local: Local, visitor: Page, data: str | bytes) -> None:
     before = local.refusals["size or kind"]
-    page.channel.send(data)
-    assert closed(page.channel) == 1009
+    visitor.channel.send(data)
+    assert closed(visitor.channel) == 1009
     local.refused("size or kind", before)
 
 
@@ -384,20 +410,6 @@ def test_who_only_watches_may_send_nonsense_too(local: Local, learner: Page) -> 
     learner.works()
 
 
-def test_without_a_key_nobody_opens_rooms(local: Local) -> None:
-    """Otherwise whoever wishes could fill the server."""
-    before = local.sessions
-    for _ in range(5):
-        room = room_of(new_key())
-        assert local.http.get(f"/sims/{SLUG}/s/{room}/").status_code in (200, 404)
-        channel = connect(f"{local.url}/sims/{SLUG}/s/{room}/channel", viser=False)
-        greeting = {"dark": False, "reduced": False, "width": 900, "controls": True, "query": ""}
-        channel.send(json.dumps({"type": "hello", **greeting}))
-        time.sleep(0.05)
-        assert local.sessions == before
-        channel.close()
-
-
 # ---- too much
 
 
@@ -408,28 +420,28 @@ def pour(send: Callable[[], object], count: int) -> None:
             send()
 
 
-def test_a_flood_is_thinned_and_then_cut_off(local: Local, page: Page, learner: Page) -> None:
+def test_a_flood_is_thinned_and_then_cut_off(local: Local, visitor: Page, learner: Page) -> None:
     before = local.refusals["rate"]
     camera = encode_message(camera_message())
-    pour(lambda: page.viser.send(camera), 10_000)
+    pour(lambda: visitor.viser.send(camera), 10_000)
     local.refused("rate", before + 1000)
     learner.works()
-    assert closed(page.viser) == 1008
+    assert closed(visitor.viser) == 1008
 
 
-def test_a_flood_of_the_channel_is_thinned_and_then_cut_off(local: Local, page: Page, learner: Page) -> None:
+def test_a_flood_of_the_channel_is_thinned_and_then_cut_off(local: Local, visitor: Page, learner: Page) -> None:
     before = local.refusals["rate"]
-    pour(lambda: page.channel.send('{"type": "get"}'), 10_000)
+    pour(lambda: visitor.channel.send('{"type": "get"}'), 10_000)
     local.refused("rate", before + 1000)
     learner.works()
-    assert closed(page.channel) == 1008
+    assert closed(visitor.channel) == 1008
 
 
-def test_fast_sliders_are_not_a_flood_and_the_last_value_arrives(local: Local, page: Page) -> None:
+def test_fast_sliders_are_not_a_flood_and_the_last_value_arrives(local: Local, visitor: Page) -> None:
     before = local.refusals
     for k in range(300):
-        page.move("Yaw", k / 2)
-    page.until(lambda: page.params["yaw"] == 149.5, "the last value")
+        visitor.move("Yaw", k / 2)
+    visitor.until(lambda: visitor.params["yaw"] == 149.5, "the last value")
     assert local.refusals == before
 
 
@@ -503,9 +515,7 @@ def test_connections_that_break_off_leave_no_viewer(local: Local, learner: Page)
         for _ in range(5):
             other = Page(local.url, room=teacher.room)
             for end in (other.viser, other.channel):
-                linger = struct.pack("ii", 1, 0)  # close means reset
-                end.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
-                end.socket.close()
+                end.socket.shutdown(socket.SHUT_RDWR)  # without websocket's own farewell
         wait_for(lambda: (len(session.viewers), len(session.listeners)) == (1, 1), "the broken ones to be forgotten")
         teacher.works()
     learner.works()
@@ -551,8 +561,8 @@ def test_memory_stays_flat_and_the_log_stays_clean() -> None:
             learner.works()
             return server.memory()
 
-        warm = abuse(25)
-        assert abuse(50) - warm < 12.0, "megabytes"
+        warm = abuse(15)
+        assert abuse(30) - warm < 8.0, "megabytes"
         learner.works()
 
 

@@ -149,8 +149,8 @@ def test_a_full_server_says_so() -> None:
         assert "minute" in answer.text
         socket = connect(f"{local.url}/sims/{SLUG}/s/{ROOM}/{KEY}/", viser=True)
         socket.send(encode_message(camera_message()))
+        assert closed(socket) == 1013
         local.refused("full")
-        socket.close()
         channel = connect(f"{local.url}/sims/{SLUG}/s/{ROOM}/{KEY}/channel", viser=False)
         channel.send(
             json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 900, "controls": True, "query": ""})

@@ -56,7 +56,7 @@ class Witness:
     def _said(self, message: ConsoleMessage) -> None:
         text = message.text
         if message.type in ("error", "warning") and not any(words in text for words in self.expected):
-            self.complaints.append(f"console {message.type}: {text[:400]}")
+            self.complaints.append(f"console {message.type}: {text[:400]} ({message.location['url'][:200]})")
 
     def _asked(self, request: Request) -> None:
         parts = urlsplit(request.url)
@@ -114,6 +114,16 @@ class Learner:
     def open(self, path: str) -> None:
         """Open a sim's address and wait until it is live."""
         self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
+        self.wait_live()
+
+    def open_page(self, path: str) -> None:
+        """Open a page that holds the sim in a frame, and go on in the frame."""
+        self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
+        self.enter_frame()
+
+    def enter_frame(self) -> None:
+        """Go on in the frame of the page that holds a sim."""
+        self.frame = self.until(lambda: next(f for f in self.page.frames if "/s/" in f.url))
         self.wait_live()
 
     def reload(self) -> None:

@@ -116,8 +116,9 @@ def test_a_parallel_rig_has_level_lines_and_one_f_whatever_the_rounding(b: float
     left, right = parallel_rig(b, focal)
     F = fundamental(left, right)
     half = math.sqrt(0.5)
-    np.testing.assert_allclose(F, [[0, 0, 0], [0, 0, half], [0, -half, 0]], rtol=0, atol=EXACT)
-    np.testing.assert_allclose(np.abs(epipolar_line_right(F, uv)), [0.0, 1.0, uv[1]], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(F, [[0.0, 0.0, 0.0], [0.0, 0.0, half], [0.0, -half, 0.0]], rtol=0, atol=EXACT)
+    expected = np.array([0.0, 1.0, uv[1]])
+    np.testing.assert_allclose(np.abs(epipolar_line_right(F, uv)), expected, rtol=0, atol=1e-9)
 
 
 @given(cameras, rotations)

@@ -117,10 +117,10 @@ def test_near_an_epipole_too(x: float, y: float, power: float, at_right: bool, u
     T[:3, 3] = -np.array([*rng.uniform(-0.2, 0.2, 2), 1.0])
     right = Camera.from_intrinsics(500.0, 500.0, 300.0, 250.0, 20.0, T_camera_world=T)
     camera, other = (right, left) if at_right else (left, right)
-    homogeneous = camera.P @ [*other.center, 1.0]
-    beside = homogeneous[:2] / homogeneous[2] + 10.0**power * np.array([x, y])
-    measured = (uv, beside) if at_right else (beside, uv)
-    assert correction((left, right), *measured) <= least_by_scan((left, right), *measured) + 1e-9
+    u, v, w = camera.P @ [*other.center, 1.0]
+    beside = np.array([u, v]) / w + 10.0**power * np.array([x, y])
+    uv_left, uv_right = (uv, beside) if at_right else (beside, uv)
+    assert correction((left, right), uv_left, uv_right) <= least_by_scan((left, right), uv_left, uv_right) + 1e-9
 
 
 def test_two_epipoles_are_left_where_they_are() -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -25,7 +26,7 @@ from geometry.triangulation import (
 from tests.geometry.strategies import near, poses, seen_points, vectors
 
 Seen = tuple[Camera, Camera, Array]
-Method = Callable[[Camera, Camera, object, object], Triangulation]
+Method = Callable[[Camera, Camera, npt.ArrayLike, npt.ArrayLike], Triangulation]
 METHODS: tuple[Method, ...] = (triangulate_dlt, triangulate_midpoint, triangulate_optimal)
 each_method = pytest.mark.parametrize("method", METHODS)
 noises = vectors(4, 5.0)
@@ -188,7 +189,9 @@ def test_parallel_rays_have_the_gap_of_their_lines() -> None:
 def test_rays_that_part_meet_behind(method: Method) -> None:
     left, right = parallel_rig(0.6, 600.0)
     found = method(left, right, [300.0, 240.0], [340.0, 240.0])
-    assert (found.status, bool(found.valid), bool(found.in_front)) == (Status.BEHIND, False, False)
+    assert found.status == Status.BEHIND
+    assert not found.valid
+    assert not found.in_front
     assert np.isnan(found.point).all()
     assert found.parallax == pytest.approx(math.atan2(40.0 / 600.0, 1.0 - (20.0 / 600.0) ** 2))
 

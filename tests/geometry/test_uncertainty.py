@@ -1,6 +1,7 @@
 """How sure the point is: the propagated covariance, against differences and against noisy samples."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -171,20 +172,24 @@ def test_only_a_disparity_above_zero_has_a_depth(d: float) -> None:
 def test_scales_that_are_not_above_zero_are_refused(bad: float) -> None:
     rig = parallel_rig(0.6, 600.0)
     point = [0.0, 4.0, 1.0]
-    for call, argument in (
-        (lambda: depth_from_disparity(10.0, bad, 600.0), "baseline"),
-        (lambda: depth_from_disparity(10.0, 0.6, bad), "focal"),
-        (lambda: depth_sigma(4.0, bad, 600.0, 1.0), "baseline"),
-        (lambda: depth_sigma(4.0, 0.6, bad, 1.0), "focal"),
-        (lambda: depth_sigma(4.0, 0.6, 600.0, bad), "sigma"),
-        (lambda: covariance(rig, point, bad), "sigma_px"),
-    ):
+    calls: list[tuple[str, Callable[[], Array]]] = [
+        ("baseline", lambda: depth_from_disparity(10.0, bad, 600.0)),
+        ("focal", lambda: depth_from_disparity(10.0, 0.6, bad)),
+        ("baseline", lambda: depth_sigma(4.0, bad, 600.0, 1.0)),
+        ("focal", lambda: depth_sigma(4.0, 0.6, bad, 1.0)),
+        ("sigma", lambda: depth_sigma(4.0, 0.6, 600.0, bad)),
+        ("sigma_px", lambda: covariance(rig, point, bad)),
+    ]
+    for argument, call in calls:
         with pytest.raises(GeometryError) as caught:
             call()
         assert caught.value.argument == argument
-    if bad != 0.0:
-        with pytest.raises(GeometryError, match="sigma"):
-            monte_carlo(*rig, [400.0, 240.0], [320.0, 240.0], bad, 10, 0)
+
+
+@pytest.mark.parametrize("bad", [-1.0, math.nan, math.inf])
+def test_samples_of_a_bad_sigma_are_refused(bad: float) -> None:
+    with pytest.raises(GeometryError, match="sigma"):
+        monte_carlo(*parallel_rig(0.6, 600.0), [400.0, 240.0], [320.0, 240.0], bad, 10, 0)
 
 
 def test_one_camera_is_not_enough() -> None:

@@ -12,19 +12,26 @@ from sims.kit.sim import Sim
 AnySim = Sim[Any, Any]
 
 
-def states(sim: AnySim) -> Iterator[tuple[str, Params]]:
-    """Name and parameters of each."""
+def few(sim: AnySim) -> Iterator[tuple[str, Params]]:
+    """Name and parameters of the defaults, each named state and each choice."""
     start = sim.params()
     yield "defaults", start
-    for name, changes in sim.states.items():
-        yield name, start.changed(changes)
-    for chosen in _choices(start):
-        yield from _at_bounds(chosen)
+    yield from ((name, start.changed(changes)) for name, changes in sim.states.items())
+    yield from ((_differs(chosen), chosen) for chosen in _choices(start))
+
+
+def bounds(sim: AnySim) -> Iterator[tuple[str, Params]]:
+    """Each number at both its bounds, with the defaults and with each choice."""
+    for chosen in (sim.params(), *_choices(sim.params())):
+        for name in numeric_fields(type(chosen)):
+            value = getattr(chosen, name)
+            for end, bound in zip(("least", "greatest"), chosen.bounds(name), strict=True):
+                at_end = tuple(bound for _ in value) if isinstance(value, tuple) else bound
+                yield f"{_differs(chosen)}, {end} {name}", chosen.moved({name: at_end})
 
 
 def _choices(start: Params) -> Iterator[Params]:
-    """The defaults, and each word of each choice and each switch turned, one at a time."""
-    yield start
+    """Each other word of each choice and each switch turned, one at a time."""
     for name, field in type(start).model_fields.items():
         words: tuple[Any, ...] = choices(field)
         if extra(field).get("control") == "switch":
@@ -32,19 +39,12 @@ def _choices(start: Params) -> Iterator[Params]:
         yield from (start.moved({name: word}) for word in words if word != getattr(start, name))
 
 
-def _at_bounds(start: Params) -> Iterator[tuple[str, Params]]:
-    differs = ", ".join(f"{k}={v}" for k, v in start.query_items().items()) or "defaults"
-    if differs != "defaults":
-        yield differs, start
-    for name in numeric_fields(type(start)):
-        value = getattr(start, name)
-        for end, bound in zip(("least", "greatest"), start.bounds(name), strict=True):
-            at_end = tuple(bound for _ in value) if isinstance(value, tuple) else bound
-            yield f"{differs}, {end} {name}", start.moved({name: at_end})
+def _differs(params: Params) -> str:
+    """In which parameters a state isn't the default."""
+    return ", ".join(f"{name}={text}" for name, text in params.query_items().items()) or "defaults"
 
 
-ALL = [(sim, name, params) for sim in SIMS for name, params in states(sim)]
-NAMES = [f"{sim.slug}: {name}" for sim, name, _ in ALL]
-FEW = [case for case in ALL if "," not in case[1]]
-"""Without the bounds: defaults, named states, choices."""
+FEW = [(sim, name, params) for sim in SIMS for name, params in few(sim)]
 FEW_NAMES = [f"{sim.slug}: {name}" for sim, name, _ in FEW]
+ALL = [*FEW, *((sim, name, params) for sim in SIMS for name, params in bounds(sim))]
+NAMES = [f"{sim.slug}: {name}" for sim, name, _ in ALL]

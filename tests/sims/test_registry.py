@@ -13,7 +13,7 @@ import pytest
 from sims import SIMS, by_slug
 from sims.kit import pane, readout
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, choices, extra, field_bounds, numeric_fields
+from sims.kit.params import Params, choices, entry_bounds, extra, field_bounds, numeric_fields
 from sims.kit.sim import Sim, jsonable
 from sims.kit.viewer import Look
 from tests.frames import differences
@@ -240,7 +240,12 @@ def field_cases() -> list[tuple[AnySim, str]]:
     ]
 
 
-each_control = pytest.mark.parametrize(("sim", "name"), field_cases(), ids=[f"{s.slug}: {n}" for s, n in field_cases()])
+def each(cases: list[tuple[AnySim, str]]) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize(("sim", "name"), cases, ids=[f"{sim.slug}: {name}" for sim, name in cases])
+
+
+each_control = each(field_cases())
+each_number = each([(sim, name) for sim, name in field_cases() if name in NUMERIC[sim.slug]])
 
 
 def shown(params: Params, name: str) -> Any:
@@ -264,7 +269,9 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         low, high = rig.session.params.bounds(name)
         step = extra(field)["step"]
         aims = [low, high, high - step]
-        aims = [tuple(a for _ in start) for a in aims] if isinstance(start, tuple) else aims
+        if isinstance(start, tuple):
+            ranges = zip(*entry_bounds(field), strict=True)
+            aims = list(zip(*((low, high, high - step) for low, high in ranges), strict=True))
     for aim in aims:
         wanted = shown(rig.session.params.model_copy(update={name: aim}), name)
         rig.browser.move(name, wanted)
@@ -274,11 +281,8 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         assert control.value == pytest.approx(wanted)
 
 
-@each_control
+@each_number
 def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
-    field = sim.params.model_fields[name]
-    if extra(field)["control"] in ("choice", "switch"):
-        return
     rig = rigs[sim.slug]
     rig.show(sim.params())
     start = getattr(rig.session.params, name)
@@ -287,7 +291,10 @@ def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim:
         many = isinstance(start, tuple)
         rig.browser.move(name, [beyond for _ in start] if many else beyond)
         rig.settle()
-        wanted: Any = [bound for _ in start] if many else bound
+        wanted: Any = bound
+        if many:
+            least, greatest = entry_bounds(sim.params.model_fields[name])
+            wanted = list(least if beyond < low else greatest)
         assert shown(rig.session.params, name) == wanted
         assert rig.browser.control(name).value == pytest.approx(wanted)
 
@@ -342,3 +349,34 @@ def test_what_can_be_dragged_is_known_and_moves(sim: AnySim) -> None:
             rig.browser.drag(name, (x + 0.05, y + 0.02, z + 0.03))
             rig.settle()
             assert rig.session.params != before, name
+
+
+@each_sim
+def test_what_is_dragged_can_be_typed(sim: AnySim) -> None:
+    with Rig(sim) as rig:
+        for typed in sim.typed:
+            assert typed.handle in sim.handles
+            place = typed.place(rig.session.params, rig.session.solution)
+            assert place is not None
+            label = f"{typed.title} ({typed.unit})"
+            assert rig.browser.model.control(label).value == pytest.approx(place)
+            aim = [v + step for v, step in zip(place, (0.05, 0.1, -0.05), strict=True)]
+            rig.browser.move(label, aim)
+            rig.settle()
+            place = typed.place(rig.session.params, rig.session.solution)
+            assert place == pytest.approx(aim, abs=1e-6)
+            assert rig.browser.model.control(label).value == pytest.approx(aim, abs=1e-6)
+
+
+@each_state
+def test_what_can_be_typed_is_shown_where_it_exists(
+    rigs: dict[str, Rig], sim: AnySim, name: str, params: Params
+) -> None:
+    rig = rigs[sim.slug]
+    rig.show(params)
+    for typed in sim.typed:
+        place = typed.place(params, rig.session.solution)
+        control = rig.browser.model.control(f"{typed.title} ({typed.unit})")
+        assert control.props["visible"] == (place is not None)
+        if place is not None:
+            assert control.value == pytest.approx(place)

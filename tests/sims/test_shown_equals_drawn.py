@@ -14,6 +14,8 @@ from geometry.euler import ORDERS
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.euler_angles import EulerParams
 from sims.kit.readout import quantity
+from sims.triangulation import SIM as TRIANGULATION
+from sims.triangulation import TriangulationParams
 from tests.server import Rig
 
 Array = npt.NDArray[np.float64]
@@ -28,10 +30,11 @@ each_convention = pytest.mark.parametrize(("order", "frame"), list(product(ORDER
 
 @pytest.fixture(scope="module")
 def rig() -> Iterator[Rig]:
-    made = Rig(EULER_ANGLES)
-    yield made
-    made.close()
-    assert not made.problems()
+    with Rig(EULER_ANGLES) as rig:
+        yield rig
+
+
+# ---- euler-angles
 
 
 def states(order: str, frame: str, count: int) -> Iterator[EulerParams]:
@@ -137,3 +140,159 @@ def check_arc(rig: Rig, arc: str, normal: Array, angle: float) -> None:
 def unit(vector: Array) -> Array:
     scaled: Array = vector / np.linalg.norm(vector)
     return scaled
+
+
+# ---- triangulation
+
+
+@pytest.fixture(scope="module")
+def stereo() -> Iterator[Rig]:
+    with Rig(TRIANGULATION) as rig:
+        yield rig
+
+
+def pairs(count: int = 25) -> Iterator[TriangulationParams]:
+    """The sim's named states, and random ones."""
+    start = TriangulationParams()
+    yield from (start.changed(changes) for changes in TRIANGULATION.states.values())
+    random = np.random.default_rng(5)
+    for _ in range(count):
+        u, v, w = random.uniform((0, 0, 0), (639, 479, 639)).tolist()
+        yield start.changed(
+            {
+                "baseline": random.uniform(0.05, 2.0),
+                "focal": random.uniform(200.0, 1500.0),
+                "left_uv": (u, v),
+                "right_uv": (w, min(max(v + random.normal(), 0.0), 479.0)),
+                "noise": random.choice([0.0, 0.5, 2.0]),
+                "seed": int(random.integers(100)),
+                "method": random.choice(["dlt", "midpoint", "optimal"]),
+            }
+        )
+
+
+def names_of_pairs() -> list[str]:
+    return [*TRIANGULATION.states, *(f"random {k}" for k in range(25))]
+
+
+each_pair = pytest.mark.parametrize("params", list(pairs()), ids=names_of_pairs())
+
+
+def centre(params: TriangulationParams, side: str) -> Array:
+    return np.array([params.baseline * (-0.5 if side == "left" else 0.5), 0.0, 1.0])
+
+
+def pixels(params: TriangulationParams, side: str, points: Array) -> Array:
+    """Where points in the world (n, 3) are in a picture: x to the right, y down, looking along +Y."""
+    x, y, z = (points - centre(params, side)).T
+    return np.column_stack([320.0 + params.focal * x / y, 240.0 - params.focal * z / y])
+
+
+def measured_pixels(params: TriangulationParams) -> dict[str, Array]:
+    solution = TRIANGULATION.solve(params)
+    return {"left": np.array(solution.measured_left), "right": np.array(solution.measured_right)}
+
+
+@each_pair
+def test_cameras_rays_and_pixels_are_where_the_numbers_say(stereo: Rig, params: TriangulationParams) -> None:
+    stereo.show(params)
+    model = stereo.model
+    for side, pixel in measured_pixels(params).items():
+        pose = model.world_pose(f"/{side}")
+        np.testing.assert_allclose(pose[:3, 3], centre(params, side), rtol=0, atol=1e-12)
+        np.testing.assert_allclose(pose[:3, :3], [[1, 0, 0], [0, 0, 1], [0, -1, 0]], rtol=0, atol=1e-12)
+        ray = model.points(f"/{side}/ray")[0]
+        np.testing.assert_allclose(ray[0], centre(params, side), rtol=0, atol=1e-12)
+        np.testing.assert_allclose(pixels(params, side, ray[1:]), [pixel], rtol=0, atol=2e-3)
+        ball = model.world_pose(f"/{side}/pixel")[:3, 3]
+        np.testing.assert_allclose(pixels(params, side, ball[None]), [pixel], rtol=0, atol=1e-6)
+        corners = pixels(params, side, model.points(f"/{side}/picture"))
+        frame = {(-0.5, -0.5), (639.5, -0.5), (639.5, 479.5), (-0.5, 479.5)}
+        assert {(round(u, 2), round(v, 2)) for u, v in corners.tolist()} == frame
+    ends = model.points("/baseline").reshape(-1, 3)
+    np.testing.assert_allclose(ends, [centre(params, "left"), centre(params, "right")], rtol=0, atol=1e-6)
+
+
+@each_pair
+def test_points_of_all_methods_are_where_the_numbers_say(stereo: Rig, params: TriangulationParams) -> None:
+    stereo.show(params)
+    model, solution = stereo.model, TRIANGULATION.solve(params)
+    for method, found in solution.by_method.items():
+        assert model.visible(f"/{method}") == (found.point is not None)
+        if found.point is not None:
+            np.testing.assert_array_equal(model.world_pose(f"/{method}")[:3, 3], found.point)
+            assert model.visible(f"/{method}/filled") == (method == params.method)
+            assert model.visible(f"/{method}/ghost") == (method != params.method)
+            for side, pixel in measured_pixels(params).items():
+                at = pixels(params, side, found.point[None])[0]
+                error = {"left": found.reprojection_left, "right": found.reprojection_right}[side]
+                assert np.linalg.norm(at - pixel) == pytest.approx(error, abs=1e-6)
+    assert model.visible("/point") == (solution.target is not None)
+    if solution.target is not None:
+        np.testing.assert_array_equal(model.world_pose("/point")[:3, 3], solution.target)
+    if model.visible("/gap"):
+        assert solution.closest_points is not None
+        np.testing.assert_allclose(model.points("/gap")[0], solution.closest_points, rtol=1e-6, atol=1e-6)
+        length = float(np.linalg.norm(np.diff(model.points("/gap")[0], axis=0)))
+        assert length == pytest.approx(solution.ray_gap, rel=1e-3, abs=1e-5)
+
+
+@each_pair
+def test_ellipsoid_is_the_covariance_and_the_cloud_its_samples(stereo: Rig, params: TriangulationParams) -> None:
+    stereo.show(params)
+    model, solution = stereo.model, TRIANGULATION.solve(params)
+    np.testing.assert_array_equal(model.points("/cloud"), solution.cloud.astype(np.float32))
+    if model.visible("/uncertainty"):
+        pose = model.world_pose("/uncertainty/ellipsoid")
+        np.testing.assert_array_equal(pose[:3, 3], solution.point)
+        scaled = pose[:3, :3] @ np.diag(model.node("/uncertainty/ellipsoid").props["scale"]) / 3.0
+        wanted = solution.covariance
+        assert wanted is not None
+        np.testing.assert_allclose(scaled @ scaled.T, wanted, rtol=0, atol=1e-9 * np.abs(wanted).max())
+        assert np.linalg.det(pose[:3, :3]) == pytest.approx(1.0)
+    else:
+        assert solution.ellipsoid_axes is None or solution.vague or not params.show_ellipsoid
+
+
+@each_pair
+def test_whether_there_is_a_point_is_said_in_the_scene_and_beside_it(stereo: Rig, params: TriangulationParams) -> None:
+    stereo.show(params)
+    solution = TRIANGULATION.solve(params)
+    warned = solution.point is None or solution.vague
+    assert stereo.model.visible("/warning") == warned
+    assert ("s3-warn" in stereo.model.html("s3-readouts")) == warned
+
+
+def test_dragging_the_point_moves_both_pixels_to_its_projections(stereo: Rig) -> None:
+    stereo.show(TriangulationParams())
+    aim = (0.2, 3.0, 1.3)
+    stereo.browser.drag("/point", (0.1, 3.5, 1.2), aim)
+    stereo.settle()
+    params = stereo.session.params
+    assert isinstance(params, TriangulationParams)
+    for side, pixel in (("left", params.left_uv), ("right", params.right_uv)):
+        np.testing.assert_allclose(pixels(params, side, np.array([aim])), [pixel], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(stereo.model.world_pose("/point")[:3, 3], aim, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("aim", [(9.0, 2.0, 1.0), (-9.0, 2.0, 1.0), (0.0, 1.0, 9.0), (0.0, -3.0, 1.0), (0.0, 0.0, 1.0)])
+def test_a_point_dragged_out_of_sight_stays_where_both_pictures_show_it(
+    stereo: Rig, aim: tuple[float, float, float]
+) -> None:
+    stereo.show(TriangulationParams())
+    stereo.browser.drag("/point", aim)
+    stereo.settle()
+    params = stereo.session.params
+    assert isinstance(params, TriangulationParams)
+    for side in ("left", "right"):
+        ((u, v),) = pixels(params, side, stereo.model.world_pose("/point")[None, :3, 3]).tolist()
+        assert -1e-6 <= u <= 639 + 1e-6
+        assert -1e-6 <= v <= 479 + 1e-6
+
+
+def test_shift_drags_along_one_axis(stereo: Rig) -> None:
+    stereo.show(TriangulationParams())
+    x, y, z = stereo.model.world_pose("/point")[:3, 3].tolist()
+    stereo.browser.drag("/point", (x + 0.02, y + 0.5, z + 0.03), modifier="shift")
+    stereo.settle()
+    np.testing.assert_allclose(stereo.model.world_pose("/point")[:3, 3], (x, y + 0.5, z), rtol=0, atol=1e-9)

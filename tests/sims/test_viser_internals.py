@@ -45,6 +45,7 @@ from tests.server import Rig
 
 VISER = Path(viser.__file__).parent
 PINNED = {
+    "_gui_input_handle_from_uuid",
     "_impl",
     "_live_connections",
     "_queue_scene_message",

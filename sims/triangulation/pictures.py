@@ -1,0 +1,91 @@
+"""The left and the right picture, and the plot of depth uncertainty against depth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.triangulation import depth_sigma
+from sims.kit.palette import Palette
+from sims.kit.pane import Pane, Picture
+from sims.kit.plot import Plot, room
+from sims.kit.readout import quantity
+from sims.triangulation.model import HEIGHT, WIDTH, Pixel, TriangulationParams, TriangulationSolution
+
+MAGNIFICATIONS = (1, 10, 100, 1000)
+LONG_ENOUGH = 25.0
+"""Pixels that the arrow of an error should be long."""
+SEEN_ERROR = 5e-4
+
+
+def panes(p: TriangulationParams, s: TriangulationSolution, palette: Palette) -> Sequence[Pane]:
+    """Both pictures and the plot."""
+    chosen = s.by_method[p.method]
+    times = magnification(chosen.reprojection_left, chosen.reprojection_right)
+    return (
+        _picture(
+            "left", "right", p.left_uv, s.measured_left, s.line_left, chosen.pixel_left, chosen.reprojection_left,
+            times, noisy=p.noise > 0.0,
+        ),
+        _picture(
+            "right", "left", p.right_uv, s.measured_right, s.line_right, chosen.pixel_right, chosen.reprojection_right,
+            times, noisy=p.noise > 0.0,
+        ),
+        _plot(p, s),
+    )  # fmt: skip
+
+
+def magnification(left: float | None, right: float | None) -> int:
+    """How many times longer than the errors their arrows are, so that the longer one can be seen."""
+    longest = max(left or 0.0, right or 0.0)
+    if longest < SEEN_ERROR:
+        return 1
+    return next((m for m in MAGNIFICATIONS if m * longest >= LONG_ENOUGH), MAGNIFICATIONS[-1])
+
+
+def _picture(
+    side: str, other: str, held: Pixel, measured: Pixel, line: Array, found: Pixel | None, error: float | None,
+    times: int, *, noisy: bool,
+) -> Pane:  # fmt: skip
+    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
+    picture.homogeneous_line(line.tolist(), other, dash="7 5")
+    if noisy:
+        picture.cross(measured, side)
+    if found is not None and error is not None:
+        picture.dot(found, "ink", 10, hollow=True)
+        if error >= SEEN_ERROR:
+            tip = [m + times * (f - m) for m, f in zip(measured, found, strict=True)]
+            picture.arrow(measured, tip, "ink", width=2.5)
+    picture.handle(f"{side}_uv", held, f"{side.capitalize()} point", side[0].upper())
+    return picture.pane(_error_in_words(error, times))
+
+
+def _error_in_words(error: float | None, times: int) -> str:
+    if error is None:
+        return "no point to project"
+    drawn = f", arrow ×{times}" if times > 1 else ""
+    return f"error {quantity(error, 'px', 2)}{drawn}"
+
+
+def _plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
+    depth, sigma = s.depth or 4.0, s.depth_sigma
+    y_max = room(sigma or float(depth_sigma(depth, p.baseline, p.focal, s.sigma_px)), 1.8)
+    plot = Plot("plot", "Depth uncertainty", x="depth Z (m)", y="σ of Z (m)", x_max=room(depth, 1.5), y_max=y_max)
+    for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
+        plot.curve(_curve(times * p.baseline, p.focal, s.sigma_px, plot.x_max, y_max), words, ghost=times != 1.0)
+    if s.depth is not None and sigma is not None:
+        plot.mark(s.depth, sigma, f"{quantity(s.depth, 'm', 2)} ± {quantity(sigma, 'm')}")
+    return plot.pane(f"for σ = {quantity(s.sigma_px, 'px', 2)} in the pictures")
+
+
+@lru_cache(maxsize=256)
+def _curve(baseline: float, focal: float, sigma: float, x_max: float, y_max: float) -> list[tuple[float, float]]:
+    """From the origin to where it leaves the plot."""
+    end = min(x_max, math.sqrt(y_max / float(depth_sigma(1.0, baseline, focal, sigma))))
+    depths = np.linspace(end / 24, end, 24)
+    sigmas = depth_sigma(depths, baseline, focal, sigma)
+    return [(0.0, 0.0), *zip(depths.tolist(), sigmas.tolist(), strict=True)]

@@ -1,0 +1,120 @@
+"""The address bar holds the state; it survives reload, Back and Forward, and can be shared."""
+
+from __future__ import annotations
+
+from urllib.parse import parse_qs, urlsplit
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from sims.kit.palette import DARK
+from tests.e2e.conftest import Classroom
+from tests.e2e.picture import Picture
+
+
+def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=45&pitch=20")
+    learner.sees(yaw=45)
+    assert learner.query() == "yaw=45", "default values are left out"
+
+    learner.type("roll", "-77")
+    learner.choose("frame", "extrinsic")
+    learner.sees(yaw=45, roll=-77, frame="extrinsic")
+    assert parse_qs(learner.query()) == {"yaw": ["45"], "roll": ["-77"], "frame": ["extrinsic"]}
+    learner.type("yaw", "30")
+    learner.sees(yaw=30)
+    assert "yaw" not in learner.query()
+
+    room = urlsplit(learner.address).path
+    learner.reload()
+    solution = learner.sees(yaw=30, roll=-77, frame="extrinsic")
+    assert urlsplit(learner.address).path == room
+    learner.until(lambda: np.testing.assert_allclose(
+        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+    ))
+
+    learner.press("Reset")
+    learner.sees(yaw=45, pitch=20, roll=10, frame="intrinsic")
+
+
+def test_back_and_forward_keep_working(classroom: Classroom) -> None:
+    learner = classroom.enter()
+    page = learner.page
+    page.goto(learner.url + "/")
+    page.get_by_role("link", name="Euler angles").click()
+    page.get_by_role("link", name="Full screen").click()
+    learner.wait_live()
+    learner.type("yaw", "99")
+    learner.sees(yaw=99)
+    history = page.evaluate("history.length")
+    learner.type("yaw", "98")
+    learner.sees(yaw=98)
+    assert page.evaluate("history.length") == history, "moving a control adds nothing to go back through"
+
+    page.go_back()
+    expect(page.get_by_role("heading", level=1, name="Euler angles")).to_be_visible()
+    page.go_forward()
+    learner.wait_live()
+    learner.sees(yaw=98)
+    learner.type("pitch", "-5")
+    learner.sees(yaw=98, pitch=-5)
+
+
+def test_the_sim_page_follows_the_sim(classroom: Classroom) -> None:
+    learner = classroom.enter()
+    learner.open_page("euler-angles?yaw=45&theme=light")
+    learner.sees(yaw=45)
+    learner.type("yaw", "-15")
+    learner.sees(yaw=-15)
+    page = learner.page
+    learner.until(lambda: parse_qs(urlsplit(page.url).query) == {"yaw": ["-15"], "theme": ["light"]})
+    full = page.get_by_role("link", name="Full screen").get_attribute("href") or ""
+    assert parse_qs(urlsplit(full).query) == {"yaw": ["-15"], "theme": ["light"]}
+    assert "embed?yaw=-15" in page.locator("[data-embed]").inner_text()
+
+
+def test_share_gives_a_link_to_the_same_state(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?order=zxz&view=4,1,2,0,0,0", permissions=["clipboard-read", "clipboard-write"])
+    learner.type("yaw", "123")
+    solution = learner.sees(yaw=123, order="zxz")
+    learner.press("Share link")
+    expect(learner.frame.get_by_role("alert")).to_contain_text("Link copied")
+    link = learner.page.evaluate("navigator.clipboard.readText()")
+    assert "/s/" not in link, "a shared link opens a room of its own"
+
+    friend = classroom.open(link)
+    assert friend.sees(yaw=123, order="zxz") == solution
+    np.testing.assert_allclose(friend.sockets.camera["position"], [4, 1, 2], atol=1e-6)
+    friend.type("yaw", "1")
+    friend.sees(yaw=1)
+    learner.type("pitch", "50")
+    learner.sees(yaw=123, pitch=50)
+
+
+def test_theme_view_and_controls_of_a_link_work_and_last(classroom: Classroom) -> None:
+    view = "2,-4,1.5,0.1,0,0.2"
+    learner = classroom.open(f"euler-angles/embed?theme=dark&view={view}&yaw=-50&pitch=-20")
+    for _ in range(2):
+        learner.sees(yaw=-50)
+        camera = learner.sockets.camera
+        np.testing.assert_allclose(camera["position"], [2, -4, 1.5], atol=1e-6)
+        np.testing.assert_allclose(camera["look_at"], [0.1, 0, 0.2], atol=1e-6)
+        assert camera["fov"] == pytest.approx(0.7)
+        assert parse_qs(urlsplit(learner.address).query) == {
+            "theme": ["dark"], "view": [view], "yaw": ["-50"], "pitch": ["-20"],
+        }  # fmt: skip
+        tip = learner.scene.points("/turn1/turn2/turn3/arrows")[2]
+        at = tip[0] + 0.94 * (tip[1] - tip[0])
+        learner.until(lambda at=at: Picture(learner, DARK).shows("z", at))  # type: ignore[misc]
+        learner.reload()
+
+    learner.open("euler-angles/embed?controls=0&yaw=5")
+    assert learner.frame.get_by_role("slider").count() == 0
+    assert learner.frame.locator(".s3-readouts").count() == 0
+    box = learner.frame.locator("canvas[data-engine]").bounding_box()
+    assert box is not None
+    assert box["width"] == learner.page.viewport_size["width"], "without controls the scene has the whole width"  # type: ignore[index]
+    learner.reload()
+    learner.sees(yaw=5)
+    assert learner.frame.get_by_role("slider").count() == 0

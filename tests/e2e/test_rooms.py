@@ -1,0 +1,99 @@
+"""Rooms: learners on the same sim don't see each other; those with a room's link see the same, and may only watch."""
+
+from __future__ import annotations
+
+from urllib.parse import urlsplit, urlunsplit
+
+import numpy as np
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner
+from tests.frames import differences
+
+# Panel widths and the names of sessions and connections aside, viewers of a room receive the same.
+PRIVATE = """async (viewer) => {
+  const socket = new WebSocket(`${sim3.path}channel?viewer=${viewer}`);
+  const answers = [];
+  socket.onmessage = (event) => answers.push(JSON.parse(event.data));
+  await new Promise((done) => (socket.onopen = done));
+  const say = (message) => socket.send(JSON.stringify(message));
+  say({ type: "hello", dark: false, reduced: false, width: 900, controls: true, query: "yaw=-7" });
+  say({ type: "set", params: { yaw: -170 } });
+  say({ type: "action", name: "animate" });
+  say({ type: "handle", name: "left_uv", x: 1, y: 1 });
+  say({ type: "get" });
+  while (answers.filter((answer) => answer.type === "state").length < 2) await new Promise((done) => setTimeout(done, 20));
+  socket.close();
+  return answers;
+}"""
+
+
+def watch_only(address: str) -> str:
+    """The address of a room without its key and state."""
+    parts = urlsplit(address)
+    slug_and_room = parts.path.strip("/").split("/")[:-1]
+    return urlunsplit((parts.scheme, parts.netloc, "/" + "/".join(slug_and_room) + "/", "", ""))
+
+
+def same_scene(a: Learner, b: Learner) -> None:
+    """Both browsers received the same scene (not the same panel: a watcher's is disabled)."""
+
+    def compare() -> None:
+        scenes = [{k: v for k, v in x.scene.snapshot().items() if k.startswith("scene ")} for x in (a, b)]
+        for scene in scenes:
+            for thing in scene.values():
+                thing.pop("drags"), thing.pop("clicks")
+        assert differences(*scenes, within=1e-9) == []
+
+    a.until(lambda: b.page.wait_for_timeout(1) or True)
+    a.until(compare)
+
+
+def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom) -> None:
+    ada = classroom.open("euler-angles/embed?yaw=45")
+    bob = classroom.open("euler-angles/embed?yaw=45")
+    assert urlsplit(ada.address).path != urlsplit(bob.address).path
+    before = bob.scene.messages
+
+    ada.type("pitch", "-60")
+    ada.sees(yaw=45, pitch=-60)
+    bob.type("roll", "-33")
+    bob.sees(yaw=45, pitch=20, roll=-33)
+    ada.type("yaw", "12")
+    ada.sees(yaw=12, pitch=-60, roll=10)
+    assert [state["params"]["pitch"] for state in bob.sockets.told] == [20] * len(bob.sockets.told)
+    assert bob.scene.messages > before
+    assert not np.allclose(ada.scene.world_pose("/turn1"), bob.scene.world_pose("/turn1"))
+
+
+def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom: Classroom) -> None:
+    teacher = classroom.open("euler-angles/embed?yaw=70")
+    helper = classroom.open(teacher.address)
+    watcher = classroom.open(watch_only(teacher.address))
+    helper.sees(yaw=70)
+    watcher.sees(yaw=70)
+
+    helper.type("pitch", "-40")
+    for learner in (teacher, helper, watcher):
+        learner.sees(yaw=70, pitch=-40)
+    teacher.choose("order", "zxz")
+    for learner in (teacher, helper, watcher):
+        learner.sees(order="zxz", yaw=70)
+    same_scene(teacher, helper)
+    same_scene(teacher, watcher)
+
+    version = teacher.sockets.state["version"]
+    panel = watcher.frame.locator("[role=slider], input[type=text], input[type=checkbox], button.mantine-Button-root")
+    for control in panel.all():
+        if control.is_visible():
+            assert not control.is_enabled() or control.get_attribute("disabled") is not None, control.evaluate("e => e.outerHTML")
+    for name in ("yaw", "roll"):
+        watcher.control("slider", name).press("ArrowRight", timeout=2000)
+    answers = watcher.frame.evaluate(PRIVATE, "0123456789abcdef")
+    assert {answer["params"]["yaw"] for answer in answers} == {70}
+
+    teacher.type("roll", "5")
+    for learner in (teacher, helper, watcher):
+        learner.sees(yaw=70, roll=5)
+        assert learner.sockets.state["version"] == version + 1, "the watcher changed something"
+    assert watcher.sockets.state["version"] == version + 1
