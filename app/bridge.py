@@ -34,6 +34,7 @@ LARGEST_MESSAGE = 16 * 1024
 MESSAGES_PER_SECOND = 200
 HELLO_WITHIN = 2.0
 NARROW = 900
+PHONE = 576
 Number = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
@@ -217,7 +218,7 @@ class Bridge:
             # A page whose first message is late may still bring its state.
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-            look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching)
+            look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching, hello.width <= PHONE)
             link.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)
         except Full:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from starlette.datastructures import MutableHeaders
+from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
@@ -44,3 +45,26 @@ class Headers:
             await send(message)
 
         await self._app(scope, receive, sender)
+
+
+LARGEST_BODY = 64 * 1024
+
+
+class SmallBodies:
+    """Refuses a request whose body is larger than any parameters are, without reading it all."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        received = 0
+
+        async def receiver() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b"")) if message["type"] == "http.request" else 0
+            if received > LARGEST_BODY:
+                raise HTTPException(413, f"The body may have {LARGEST_BODY} bytes.")
+            return message
+
+        await self._app(scope, receiver if scope["type"] == "http" else receive, send)

@@ -20,7 +20,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from app import pages
 from app.bridge import Bridge
-from app.security import Headers
+from app.security import Headers, SmallBodies
 from app.session import Full, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
 from geometry import GeometryError
@@ -51,6 +51,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.root_path = settings.root_path
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
+    app.add_middleware(SmallBodies)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)

@@ -6,7 +6,6 @@ import asyncio
 import json
 import math
 import secrets
-from collections.abc import Sequence
 from contextlib import AsyncExitStack, suppress
 from importlib.metadata import version
 from time import perf_counter
@@ -22,8 +21,8 @@ PROTOCOL = Subprotocol(f"viser-v{version('viser')}")
 SLIDER = "Yaw"
 TURNED = "/turn1"
 """The node whose orientation is the slider's angle about z, in both ways of writing the sim."""
-FIRST, TURN = -179, 359
-"""Slider values are whole degrees from FIRST on, no two alike within TURN of them."""
+FIRST = -179
+"""Slider values are whole degrees from here on up to 180: no two alike, for 17 seconds at 20 a second."""
 HELLO = {"type": "hello", "dark": False, "reduced": False, "width": 1280, "controls": True, "query": ""}
 
 
@@ -38,7 +37,7 @@ class Learner:
         self._tasks: list[asyncio.Task[None]] = []
         self._slider = ""
         self._opened = asyncio.Event()
-        self.values: list[int] = []
+        self.values = range(0)
         self._index: dict[int, int] = {}
         self.sent: list[float] = []
         self.ages: list[float] = []
@@ -96,14 +95,14 @@ class Learner:
         if index is None:
             return
         if index < len(self.ages):
-            self.backwards += 1
+            self.backwards += index < len(self.ages) - 1
             return
         self.ages += [now - at for at in self.sent[len(self.ages) : index + 1]]
         self.delays.append(now - self.sent[index])
 
-    async def drag(self, values: Sequence[int], rate: float, begin: float) -> None:
+    async def drag(self, values: range, rate: float, begin: float) -> None:
         """Move the slider through `values`, `rate` of them a second, from the loop's time `begin` on."""
-        self.values = list(values)
+        self.values = values
         self._index = {value: index for index, value in enumerate(values)}
         self.sent, self.ages, self.delays, self.late = [], [], [], []
         loop = asyncio.get_running_loop()

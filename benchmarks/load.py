@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import uvloop
 
-from benchmarks.learner import FIRST, TURN, Learner
+from benchmarks.learner import FIRST, Learner
 from benchmarks.process import cpu_seconds, resident
 
 RATE = 20.0
@@ -27,13 +27,13 @@ Result = dict[str, float]
 
 async def drag(job: Job) -> Result:
     """All learners drag at once for some seconds."""
+    pid, start = job["pid"], FIRST + WARM_UP
     learners = [Learner(job["host"], path, job["camera"]) for path in job["paths"]]
     await _open(learners)
-    await _drag_all(learners, list(range(FIRST, FIRST + WARM_UP)))
+    await _drag_all(learners, range(FIRST, start))
     await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
-    pid = job["pid"]
     memory, cpu, own, begin = resident(pid), cpu_seconds(pid), _own_cpu(), time.perf_counter()
-    await _drag_all(learners, _values(int(job["seconds"] * RATE)))
+    await _drag_all(learners, range(start, start + int(job["seconds"] * RATE)))
     took, cpu_dragging = time.perf_counter() - begin, cpu_seconds(pid) - cpu
     own_share, memory_after = (_own_cpu() - own) / took, resident(pid)
     await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
@@ -86,11 +86,7 @@ async def churn(job: Job) -> Result:
     return {"opened": len(job["paths"]), "cpu_ms_per_open": 1e3 * cpu / len(job["paths"])}
 
 
-def _values(count: int) -> list[int]:
-    return [FIRST + (WARM_UP + k) % TURN for k in range(count)]
-
-
-async def _drag_all(learners: list[Learner], values: list[int]) -> None:
+async def _drag_all(learners: list[Learner], values: range) -> None:
     begin = asyncio.get_running_loop().time() + 0.1
     phase = 1.0 / RATE / len(learners)
     await asyncio.gather(*(x.drag(values, RATE, begin + k * phase) for k, x in enumerate(learners)))

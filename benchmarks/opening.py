@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import statistics
 from typing import Any
 
 from playwright.sync_api import Browser, sync_playwright
 
-from benchmarks.process import CORES
 from benchmarks.servers import SLUG, Plain, Sim3
 from tests.browser import launch_options
 
@@ -37,20 +34,19 @@ SIZE: Any = {"width": 1280, "height": 800}
 PATIENCE = 60_000
 
 
-def measure(repeats: int) -> dict[str, dict[str, list[float]]]:
-    """Seconds until `live` and `still`, for each way, turn by turn; one opening beforehand doesn't count."""
+def measure(repeats: int, warm_up: int) -> dict[str, dict[str, list[float]]]:
+    """Seconds until `live` and `still`, for each way, turn by turn; the first `warm_up` don't count."""
     found: dict[str, dict[str, list[float]]] = {}
     with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
-        os.sched_setaffinity(0, CORES)
         browser = playwright.chromium.launch(**launch_options())
         addresses = {
             sim3.way: f"http://127.0.0.1:{sim3.port}/sims/{SLUG}/embed",
             plain.way: f"http://127.0.0.1:{plain.port}/",
         }
-        for turn in range(repeats + 1):
+        for turn in range(warm_up + repeats):
             for way, address in addresses.items():
                 times = open_once(browser, address)
-                if turn:
+                if turn >= warm_up:
                     for name, seconds in times.items():
                         found.setdefault(way, {}).setdefault(name, []).append(seconds)
         browser.close()
@@ -69,7 +65,3 @@ def open_once(browser: Browser, address: str) -> dict[str, float]:
         return {name: at / 1e3 for name, at in seen.items() if at > 0}
     finally:
         context.close()
-
-
-def median(seconds: list[float]) -> float:
-    return statistics.median(seconds) if seconds else float("nan")

@@ -76,6 +76,7 @@ class Camera:
         """Centre of projection −Rᵀt, (3,), in the world."""
         return np.asarray(-self.t.dot(self.R))
 
+    @np.errstate(invalid="ignore")
     def to_camera(self, points: npt.ArrayLike) -> Array:
         """Return world points (..., 3) in camera coordinates, in metres."""
         return np.asarray(as_array("points", points, 3).dot(self.R.T) + self.t)
@@ -94,6 +95,7 @@ class Camera:
             nothing = (u + v + z) - (u + v + z)  # zero, but NaN where any of them is infinite
             return stack(u + nothing, v + nothing), np.asarray(depth)
 
+    @np.errstate(invalid="ignore")
     def normalized(self, pixels: npt.ArrayLike) -> Array:
         """Return pixels (..., 2) as normalised image coordinates: where their rays meet the plane z = 1."""
         u, v = components(as_array("pixels", pixels, 2))
@@ -101,6 +103,7 @@ class Camera:
         y = (v - cy) / fy
         return stack((u - cx - skew * y) / fx, y)
 
+    @np.errstate(invalid="ignore")
     def pixel_ray(self, pixels: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the origin (3,) and unit directions (..., 3) in the world of the rays of pixels (..., 2)."""
         x, y = components(self.normalized(pixels))

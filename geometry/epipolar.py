@@ -72,6 +72,7 @@ def epipolar_line_left(F: npt.ArrayLike, pixels_right: npt.ArrayLike) -> Array:
     return _lines(as_array("F", F, 3, 3).T.tolist(), components(as_array("pixels_right", pixels_right, 2)))
 
 
+@np.errstate(invalid="ignore")
 def _lines(F: list[list[float]], pixel: Components) -> Array:
     u, v = pixel
     a, b, c = (row[0] * u + row[1] * v + row[2] for row in F)

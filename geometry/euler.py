@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import Array, Mask, Matrix3, components, each, product
-from .errors import as_array, as_choice
+from .errors import as_angle, as_array, as_choice
 from .rotations import AXES, as_rotation, axis_rotation
 
 ORDERS = ("zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz")
@@ -97,10 +97,12 @@ def _chain(r: Matrix3, sequence: str, drop_first: bool) -> tuple[float, float, f
     return first, second, third, float(slant <= LOCKED)
 
 
+@np.errstate(invalid="ignore")
 def lock_distance(middle: float | Array, order: str) -> Array:
     """Return how far, in radians, the middle angle (...) is from the nearest one that locks.
 
     Tait–Bryan orders lock at ±π/2, proper Euler orders at 0 and π, and so on every half turn.
+    Raises GeometryError for an unknown order, or an angle that isn't finite: NaN in a batch.
     """
-    from_zero = middle - (0.0 if is_proper(order) else 0.5 * math.pi)
+    from_zero = as_angle("middle", middle) - (0.0 if is_proper(order) else 0.5 * math.pi)
     return np.asarray(np.abs(from_zero - math.pi * np.rint(from_zero / math.pi)))

@@ -40,13 +40,13 @@ def nlerp(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array, *, long_wa
 
     The same arc as `slerp`, faster in the middle. Where the chord runs through zero, at the middle of a whole turn,
     it is what it tends to: half of that turn. Ends, errors and ties are as in `slerp`.
-    Source: the chord (1 − t) start + t end in coordinates along start and across it.
+    Source: the chord (1 − t) start + t end, seen from zero, on both sides of its middle.
     """
     t = as_angle("t", t)
     first, last = _arc(start, end, long_way)
     axis, angle = to_axis_angle(multiply(last, conjugate(first)))
-    half = 0.5 * angle
-    turned = 2.0 * np.arctan2(t * np.sin(half), 1.0 - t * (2.0 * np.sin(0.5 * half) ** 2))
+    cos, sin = cos_sin(0.25 * angle)
+    turned = 0.5 * angle + 2.0 * np.arctan2((2.0 * t - 1.0) * sin, cos)
     return _along(first, last, axis, turned, t)
 
 

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import numpy.typing as npt
 
 from .arrays import Array, Matrix3, components, cos_sin, each, stack, stack_matrix
@@ -99,6 +100,7 @@ def to_matrix(q: npt.ArrayLike) -> Array:
     )
 
 
+@np.errstate(invalid="ignore")
 def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
     """Return the Hamilton product p q of quaternions (..., 4): the rotation q followed by p.
 
@@ -119,6 +121,7 @@ def conjugate(q: npt.ArrayLike) -> Array:
     return as_array("q", q, 4) * (1.0, -1.0, -1.0, -1.0)
 
 
+@np.errstate(invalid="ignore")
 def rotate(q: npt.ArrayLike, points: npt.ArrayLike) -> Array:
     """Return points (..., 3) turned by quaternions (..., 4): the vector part of q p q*, for q at length one.
 

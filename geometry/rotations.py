@@ -31,14 +31,16 @@ def axis_rotation(axis: str, angle: float | Array) -> Array:
     R[j, j] = R[k, k] = cos
     R[k, j] = sin
     R[j, k] = -sin
-    return R if R.ndim == 2 else np.moveaxis(R, (0, 1), (-2, -1))
+    if R.ndim == 2:
+        return R
+    R[:, :, np.isnan(cos)] = np.nan
+    return np.moveaxis(R, (0, 1), (-2, -1))
 
 
 def skew(vector: npt.ArrayLike) -> Array:
     """Return the matrix (..., 3, 3) of the cross product with (..., 3): ``skew(a) @ b`` is a × b."""
     x, y, z = components(as_array("vector", vector, 3))
-    zero = 0.0 * x
-    return stack_matrix(zero, -z, y, z, zero, -x, -y, x, zero)
+    return stack_matrix(0.0, -z, y, z, 0.0, -x, -y, x, 0.0)
 
 
 def unit(vector: npt.ArrayLike, argument: str = "vector") -> Array:

@@ -51,6 +51,7 @@ def inverse(T_a_b: npt.ArrayLike) -> Array:
     return result
 
 
+@np.errstate(invalid="ignore")
 def apply(T_a_b: npt.ArrayLike, points: npt.ArrayLike) -> Array:
     """Return points (..., 3) given in b, in a; the batch dimensions of transforms and points broadcast."""
     T, p = as_array("T_a_b", T_a_b, 4, 4), as_array("points", points, 3)

@@ -1,5 +1,6 @@
-// Runs before viser's client and tells it three things through the address, where it looks for them: which
-// websocket is this page's, whether the theme is dark, and from where to look. sim.js restores the address.
+// Runs before viser's client and tells it three things where it looks for them, in the query of the address: which
+// websocket is this page's, whether the theme is dark, and from where to look. The address itself holds the state from
+// the first moment on, for those who reload or come back early, so viser is given another query where it reads it.
 (() => {
   const sim = JSON.parse(document.getElementById("sim3").textContent);
   const given = new URLSearchParams(location.search);
@@ -40,8 +41,16 @@
     initialCameraFov: "0.7",
   });
   if (dark) search.set("darkMode", "1");
-  window.sim3 = { ...sim, viewer, dark, path: socket, search: location.search, eye, target };
+  const Query = URLSearchParams;
+  window.URLSearchParams = class extends Query {
+    constructor(init) {
+      super(init === location.search ? search : init);
+    }
+  };
+  const replace = history.replaceState.bind(history);
+  history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
+
+  window.sim3 = { ...sim, Query, viewer, dark, path: socket, search: location.search, eye, target };
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   document.documentElement.style.colorScheme = dark ? "dark" : "light";
-  history.replaceState(null, "", "?" + search);
 })();

@@ -1,11 +1,12 @@
 // The companion of viser's client. It keeps the address equal to the state, lets pointers and keys move handles in
 // image panes, gives viser's controls accessible names, speaks what changed, and talks to the page around the sim.
 const sim = window.sim3;
+const { Query } = sim; // the browser's own URLSearchParams: boot.js has another for viser
 const embedded = window.parent !== window;
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 const options = ["view", "controls", "theme"];
-const kept = new URLSearchParams();
-for (const [name, value] of new URLSearchParams(sim.search)) if (options.includes(name)) kept.append(name, value);
+const kept = new Query();
+for (const [name, value] of new Query(sim.search)) if (options.includes(name)) kept.append(name, value);
 let query = stateQuery(sim.search);
 let socket = null;
 let retryAfter = 250;
@@ -14,7 +15,7 @@ let state = null;
 // --- Address -----------------------------------------------------------------------------------------------------
 
 function stateQuery(search) {
-  const given = new URLSearchParams(search);
+  const given = new Query(search);
   for (const name of options) given.delete(name);
   return given.toString();
 }
@@ -32,9 +33,8 @@ function address() {
   return location.pathname + (search ? "?" + search : "");
 }
 
-// viser reads its websocket and viewpoint from the address when it starts; until then the address is boot.js's.
 function showAddress() {
-  if (document.querySelector("canvas")) history.replaceState(null, "", address());
+  history.replaceState(null, "", address());
 }
 
 // --- Channel -----------------------------------------------------------------------------------------------------
@@ -87,6 +87,7 @@ function element(tag, attributes, parent = document.body) {
   return node;
 }
 
+element("h1", {}, element("header", { class: "s3-hidden" })).textContent = sim.title;
 const live = element("div", { "aria-live": "polite", role: "status", class: "s3-hidden" });
 const notice = element("div", { role: "alert", class: "s3-notice", hidden: "" });
 let speaking = 0;
@@ -201,16 +202,21 @@ let keyed = null;
 
 function nameControls(root) {
   for (const label of root.querySelectorAll("label[for]")) {
-    const control = document.getElementById(label.htmlFor);
-    if (!control) continue;
-    const name = label.textContent;
-    const row = control.parentElement;
-    for (const part of row.querySelectorAll("[role=slider], input")) {
-      if (part.getAttribute("aria-label") !== name) part.setAttribute("aria-label", name);
-      // viser leaves the number box of a disabled slider open.
-      if (sim.watching && part.disabled === false) part.disabled = true;
-    }
+    const row = label.closest(".mantine-Flex-root");
+    if (!row || row.querySelectorAll("label[for]").length > 1) continue;
+    const slider = row.querySelector("[role=slider]");
+    const boxes = row.querySelectorAll("input:not([type=hidden])");
+    slider?.setAttribute("aria-label", label.textContent);
+    boxes.forEach((box, k) => {
+      const which = boxes.length > 1 ? `, ${k + 1} of ${boxes.length}` : "";
+      box.setAttribute("aria-label", label.textContent + which);
+      if (sim.watching) box.disabled = true; // viser leaves the number box of a disabled slider open
+    });
   }
+  for (const button of root.querySelectorAll("button.mantine-ActionIcon-root:not([aria-label])")) {
+    button.setAttribute("aria-label", "Settings of the viewer");
+  }
+  document.getElementById("root").setAttribute("role", "main");
 }
 
 function markSliders() {

@@ -29,7 +29,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 from urllib.error import URLError
-from urllib.request import urlopen
+from urllib.request import ProxyHandler, build_opener
 
 import viser
 
@@ -46,6 +46,8 @@ PATIENCE = 20.0
 """Seconds after which a test gives up on something that should take a fraction of one."""
 COMPLAINT = re.compile(r"Traceback|never retrieved|never awaited|Exception|Warning|^(ERROR|CRITICAL)\b", re.M)
 T = TypeVar("T")
+DIRECT = build_opener(ProxyHandler({}))
+"""Opens addresses without a proxy, whatever the environment says."""
 
 
 def free_port() -> int:
@@ -159,7 +161,7 @@ class Server:
         if self._process.poll() is not None:
             raise AssertionError("it ended")
         try:
-            with urlopen(f"{self.url}/healthz", timeout=2) as answer:
+            with DIRECT.open(f"{self.url}/healthz", timeout=2) as answer:
                 return bool(answer.status == 200)
         except (URLError, OSError):
             return False
@@ -335,7 +337,8 @@ class Rig:
             browser.settle()
 
     async def _drawn(self) -> None:
-        await asyncio.sleep(0.001)  # what browsers sent goes through viser's tasks first
+        for _ in range(20):  # turns of the loop: what browsers sent goes through viser's tasks first
+            await asyncio.sleep(0)
         while (drawing := self.session._drawing) is not None:
             await asyncio.wait([drawing], timeout=PATIENCE)
 

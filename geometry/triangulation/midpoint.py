@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Components, components, cross, dot, ratio, square_root, stack
+from ..arrays import Array, Components, Mask, components, cross, dot, ratio, square_root, stack
 from ..camera import Camera
 from ..epipolar import baseline
 from .rays import advance, direction, nearest_depth, parallax
-from .result import Triangulation, conclude, pixel_pairs
+from .result import PARALLEL, Triangulation, conclude, pixel_pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,14 +40,13 @@ def triangulate_midpoint(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv
         on_left, on_right = advance(left, depth_left, a), advance(right, depth_right, b)
         middle = [0.5 * (x + y) for x, y in zip(on_left, on_right, strict=True)]
         ahead = (depth_left > 0.0) & (depth_right > 0.0)
-        fields = conclude((left, right), middle, parallax(a, b), ahead, defined)
-        gap = np.where(defined, _gap(between, a, b), np.nan)
+        point, status, angle = conclude((left, right), middle, parallax(a, b), ahead, defined)
+        gap = np.where(defined, _gap(between, a, b, angle > PARALLEL), np.nan)
         closest = stack(*on_left, *on_right).reshape(*defined.shape, 2, 3)
-    return Midpoint(*fields, gap, np.where(defined[..., None, None], closest, np.nan))
+    return Midpoint(point, status, angle, gap, np.where((angle > PARALLEL)[..., None, None], closest, np.nan))
 
 
-def _gap(between: Components, a: Components, b: Components) -> Any:
+def _gap(between: Components, a: Components, b: Components, skew: Mask) -> Any:
     normal, apart = cross(a, b), cross(between, a)
-    skew = ratio(abs(dot(between, normal)), square_root(dot(normal, normal)))
-    parallel = square_root(dot(apart, apart) / dot(a, a))
-    return np.where(np.isnan(skew), parallel, skew)
+    of_skew = ratio(abs(dot(between, normal)), square_root(dot(normal, normal)))
+    return np.where(skew, of_skew, square_root(dot(apart, apart) / dot(a, a)))

@@ -20,7 +20,7 @@ def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float
     """
     d = as_array("disparity", disparity)
     scale = as_number("focal", focal, above=0.0) * as_number("baseline", baseline, above=0.0)
-    return np.asarray(scale / np.where(d > 0.0, d, np.nan))
+    return np.asarray(scale / np.where(np.isfinite(d) & (d > 0.0), d, np.nan))
 
 
 def depth_sigma(depth: npt.ArrayLike, baseline: float, focal: float, sigma: float) -> Array:
@@ -34,4 +34,4 @@ def depth_sigma(depth: npt.ArrayLike, baseline: float, focal: float, sigma: floa
     Z = as_array("depth", depth)
     scale = as_number("focal", focal, above=0.0) * as_number("baseline", baseline, above=0.0)
     factor = np.sqrt(2.0) * as_number("sigma", sigma, above=0.0) / scale
-    return np.asarray(factor * np.where(Z > 0.0, Z, np.nan) ** 2)
+    return np.asarray(factor * np.where(np.isfinite(Z) & (Z > 0.0), Z, np.nan) ** 2)

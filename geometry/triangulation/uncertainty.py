@@ -13,6 +13,7 @@ from .optimal import triangulate_optimal
 _SINGULAR = 1e-12  # ratio of singular values: about the parallax below which rays count as parallel
 
 
+@np.errstate(invalid="ignore")
 def projection_jacobian(camera: Camera, points: npt.ArrayLike) -> Array:
     """Return the derivatives (..., 2, 3) of the pixel by the world point (..., 3), in pixels per metre.
 

@@ -39,7 +39,7 @@ class CameraFigure:
         """Show the picture's corners (4, 3), round it, in the camera's axes; `size` scales the body."""
         for solid in self._solids:
             solid.scale(size)
-        self._letter.pose(position=(0.0, -0.27 * size, -0.12 * size))
+        self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
         if corners.tobytes() != self._corners:
             self._corners = corners.tobytes()
             edges = np.zeros((8, 2, 3))

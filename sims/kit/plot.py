@@ -53,17 +53,11 @@ class Plot:
         )
 
     def mark(self, x: float, y: float, words: str, role: str = "held") -> None:
-        """A point of the curve with strokes to both axes."""
+        """A point of the curve with strokes to both axes; the words are for people who listen."""
         u, v = self.at(x, y)
         floor = self.height - BOTTOM
         self._parts.append(f'<path d="M{LEFT} {v:.1f}H{u:.1f}V{floor}" class="s3-guide"/>')
-        end = u > 0.6 * self.width
-        self._over.insert(
-            0,
-            f'<circle cx="{u:.1f}" cy="{v:.1f}" r="4.5" fill="var(--{role})"/>'
-            f'<text x="{u + (-8 if end else 8):.1f}" y="{v - 8:.1f}" text-anchor="{"end" if end else "start"}"'
-            f' class="s3-halo s3-value">{escape(words)}</text>',
-        )
+        self._over.append(f'<circle cx="{u:.1f}" cy="{v:.1f}" r="4.5" fill="var(--{role})"/>')
         self._words = f"{self.title}: {words}"
 
     def pane(self, note: str = "") -> Pane:

@@ -247,11 +247,11 @@ class Stage:
         )  # fmt: skip
         return Solid(handle)
 
-    def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None) -> Solid:
-        """A small sphere."""
+    def ball(self, name: str, radius: float, role: str, *, opacity: float | None = None, side: Any = "front") -> Solid:
+        """A sphere; one that others are inside of shows its back, or they'd be hidden."""
         handle = self.scene.add_icosphere(
             name, radius=radius, subdivisions=3, color=self.palette.surface(role), opacity=opacity,
-            cast_shadow=False, receive_shadow=False,
+            side=side, cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
         return Solid(handle)
 
@@ -263,14 +263,14 @@ class Stage:
         )  # fmt: skip
         return Cloud(handle)
 
-    def grip(self, name: str, radius: float, role: str = "held") -> Node:
-        """A ball with a ring halo that the pointer can drag; the session hears of it under `name`.
+    def grip(self, name: str, radius: float, role: str = "held", *, halo: float = 1.7) -> Node:
+        """A ball that the pointer can drag, with a ring `halo` times as wide; the session hears of it under `name`.
 
         It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
         """
         ball = self.ball(name, radius, role)
         ring = trimesh.creation.torus(
-            major_radius=1.7 * radius, minor_radius=0.12 * radius, major_sections=48, minor_sections=8
+            major_radius=halo * radius, minor_radius=0.07 * halo * radius, major_sections=48, minor_sections=8
         )
         for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])]):
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)

@@ -40,6 +40,7 @@ class Look:
     narrow: bool = False
     controls: bool = True
     watching: bool = False
+    phone: bool = False
 
 
 @dataclass
@@ -132,6 +133,9 @@ class Viewer:
     def _add_panes(self) -> viser.GuiHtmlHandle | None:
         if self.sim.panes is None:
             return None
+        if self.look.phone:  # viser's bottom sheet puts other panels out of sight
+            with self.client.gui.add_folder("Pictures"):
+                return self.client.gui.add_html("")
         panel = self.client.gui.add_panel()
         with panel.add_tab("Pictures"):
             html = self.client.gui.add_html("")

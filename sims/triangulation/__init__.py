@@ -30,7 +30,7 @@ SIM = Sim(
     scene=TriangulationScene,
     readouts=readouts,
     describe=describe,
-    view=View((3.8, -0.9, 3.4), (0.1, 1.9, 0.75), 2.4),
+    view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
     panes=panes,
     actions=(
         Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", model.new_sample),

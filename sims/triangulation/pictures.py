@@ -16,8 +16,8 @@ from sims.kit.plot import Plot, room
 from sims.kit.readout import quantity
 from sims.triangulation.model import HEIGHT, WIDTH, Pixel, TriangulationParams, TriangulationSolution
 
-MAGNIFICATIONS = (1, 10, 100, 1000)
-LONG_ENOUGH = 25.0
+MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+LONG_ENOUGH = 40.0
 """Pixels that the arrow of an error should be long."""
 SEEN_ERROR = 5e-4
 
@@ -74,12 +74,15 @@ def _error_in_words(error: float | None, times: int) -> str:
 def _plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
     depth, sigma = s.depth or 4.0, s.depth_sigma
     y_max = room(sigma or float(depth_sigma(depth, p.baseline, p.focal, s.sigma_px)), 1.8)
-    plot = Plot("plot", "Depth uncertainty", x="depth Z (m)", y="σ of Z (m)", x_max=room(depth, 1.5), y_max=y_max)
+    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=room(depth, 1.5), y_max=y_max)
     for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
         plot.curve(_curve(times * p.baseline, p.focal, s.sigma_px, plot.x_max, y_max), words, ghost=times != 1.0)
-    if s.depth is not None and sigma is not None:
-        plot.mark(s.depth, sigma, f"{quantity(s.depth, 'm', 2)} ± {quantity(sigma, 'm')}")
-    return plot.pane(f"for σ = {quantity(s.sigma_px, 'px', 2)} in the pictures")
+    noise = f"at {quantity(s.sigma_px, 'px', 2)} noise"
+    if s.depth is None or sigma is None:
+        return plot.pane(noise)
+    words = f"{quantity(s.depth, 'm', 2)} ± {quantity(sigma, 'm')}"
+    plot.mark(s.depth, sigma, words)
+    return plot.pane(f"{words} {noise}")
 
 
 @lru_cache(maxsize=256)

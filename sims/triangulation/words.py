@@ -52,14 +52,14 @@ def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
 
 
 def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
-    rows = [("method", "left", "right", "rms", "from result")]
+    rows = [("method", "left", "right", "rms", "apart")]
     for name, words in NAMES.items():
         found = s.by_method[name]
         errors = (found.reprojection_left, found.reprojection_right, found.reprojection_rms)
         apart = "–" if found.point is None or s.point is None else _length(float(np.linalg.norm(found.point - s.point)))
         cells = [figure(e, 3) if e is not None else "–" for e in errors]
         rows.append((f"{words} ✓" if name == p.method else words, cells[0], cells[1], cells[2], apart))
-    return Table("Reprojection error in pixels, and distance from the result", rows)
+    return Table("Reprojection error in pixels, and how far apart from the result", rows)
 
 
 def _length(metres: float) -> str:

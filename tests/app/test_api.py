@@ -176,6 +176,12 @@ def test_body_that_is_no_object_is_refused(http: httpx.Client, sim: AnySim, body
     assert "Traceback" not in answer.text
 
 
+def test_a_body_of_any_sensible_size_is_read(http: httpx.Client) -> None:
+    body = b" " * 60_000 + b"{}"
+    answer = http.post(f"/api/sims/{SIMS[0].slug}/solve", content=body, headers={"content-type": "application/json"})
+    assert answer.status_code == 200
+
+
 @each_sim
 def test_null_means_all_defaults(http: httpx.Client, sim: AnySim) -> None:
     answer = http.post(f"/api/sims/{sim.slug}/solve", content=b"null", headers={"content-type": "application/json"})

@@ -7,10 +7,12 @@ import itertools
 import json
 import random
 import socket
+import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Any
 
+import httpx
 import msgspec
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -435,6 +437,20 @@ def test_a_flood_of_the_channel_is_thinned_and_then_cut_off(local: Local, visito
     local.refused("rate", before + 1000)
     learner.works()
     assert closed(visitor.channel) == 1008
+
+
+@pytest.mark.parametrize("chunked", [False, True])
+def test_a_huge_body_is_refused_before_it_is_read(local: Local, learner: Page, chunked: bool) -> None:
+    piece = b"1" * (1 << 16)
+    pieces = (piece for _ in range(320))
+    body: Any = pieces if chunked else b"".join(pieces)
+    before = time.monotonic()
+    with suppress(httpx.WriteError):  # it needn't wait until all is written
+        answer = local.http.post(f"/api/sims/{SLUG}/solve", content=body, headers={"content-type": "application/json"})
+        assert answer.status_code == 413
+        assert len(answer.text) < 200
+    assert time.monotonic() - before < 5.0
+    learner.works()
 
 
 def test_fast_sliders_are_not_a_flood_and_the_last_value_arrives(local: Local, visitor: Page) -> None:

@@ -13,7 +13,7 @@ from tests.browser import launch_options
 from tests.e2e.learner import Learner, Witness
 from tests.server import Server
 
-DESK = ViewportSize(width=1040, height=660)
+DESK = ViewportSize(width=900, height=600)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -27,7 +27,7 @@ from sims.kit.viewer import worded
 from tests.frames import Message, SceneModel, decode_message
 
 T = TypeVar("T")
-PATIENCE = 60.0
+PATIENCE = 120.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
 OPTIONS = ("view", "controls", "theme")
 # three.js, inside viser's client, says so at each start.
@@ -107,6 +107,9 @@ class Learner:
         self.url = url
         self.sockets = Sockets(page)
         self.frame: Frame = page.main_frame
+        self.addresses: list[str] = []
+        """Every address that the page and its frames had."""
+        page.on("framenavigated", lambda frame: self.addresses.append(frame.url))
         page.set_default_timeout(PATIENCE * 1000)
 
     # ---- coming and going
@@ -227,9 +230,9 @@ class Learner:
         self.control("combobox", name).click()
         self.frame.get_by_role("option", name=shown, exact=True).click()
 
-    def press(self, label: str) -> None:
-        """Press a button of the panel."""
-        self.frame.get_by_role("button", name=label, exact=True).click()
+    def press(self, label: str, *, force: bool = False) -> None:
+        """Press a button of the panel; by force also one that is disabled."""
+        self.frame.get_by_role("button", name=label, exact=True).click(force=force)
 
     # ---- checking
 

@@ -36,6 +36,9 @@ def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom
 
     learner.press("Reset")
     learner.sees(yaw=45, pitch=20, roll=10, frame="intrinsic")
+    assert set().union(*(parse_qs(urlsplit(a).query) for a in learner.addresses)) <= {"yaw", "pitch", "roll", "frame"}, (
+        "at no moment, not even while it loads, does the address hold anything but the state"
+    )
 
 
 def test_back_and_forward_keep_working(classroom: Classroom) -> None:
@@ -43,7 +46,7 @@ def test_back_and_forward_keep_working(classroom: Classroom) -> None:
     page = learner.page
     page.goto(learner.url + "/")
     page.get_by_role("link", name="Euler angles").click()
-    page.get_by_role("link", name="Full screen").click()
+    page.get_by_role("link", name="Full screen").click()  # before the sim in the page is live
     learner.wait_live()
     learner.type("yaw", "99")
     learner.sees(yaw=99)

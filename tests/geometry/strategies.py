@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from hypothesis import assume
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -55,27 +54,41 @@ focals = st.floats(100.0, 2000.0)
 cameras = st.builds(
     camera, focals, focals, st.floats(0.0, 640.0), st.floats(0.0, 480.0), st.floats(-200.0, 200.0), poses
 )
-stereo_moves = st.builds(
-    lambda axis, angle, direction, baseline: pose(rotation_by_scipy(axis, angle), baseline * direction),
-    *(units(), st.floats(-0.4, 0.4), units(), st.floats(0.1, 2.0)),
-)
 
 
-@st.composite
-def stereo_pairs(draw: st.DrawFn) -> tuple[Camera, Camera]:
-    """Two cameras of their own focal lengths that look roughly the same way, 0.1 to 2 m apart."""
-    left, T_right_left = draw(cameras), draw(stereo_moves)
-    focal = draw(focals)
-    return left, camera(focal, 1.1 * focal, 320.0, 240.0, 10.0, T_right_left @ left.T_camera_world)
+# focal length, aspect ratio, principal point, skew
+INTRINSICS = ((200.0, 1500.0), (0.7, 1.4), (0.0, 640.0), (0.0, 480.0), (-50.0, 50.0))
 
 
-@st.composite
-def seen_points(draw: st.DrawFn) -> tuple[Camera, Camera, Array]:
-    """Two cameras, and a point in front of both that they see at an angle of a degree or more."""
-    left, right = draw(stereo_pairs())
-    x, y, z = draw(st.floats(-0.6, 0.6)), draw(st.floats(-0.6, 0.6)), draw(st.floats(0.5, 20.0))
-    point = left.center + z * (left.R.T @ [x, y, 1.0])
-    assume(float(right.project(point)[1]) > 0.2)
-    a, b = point - left.center, point - right.center
-    assume(math.hypot(*np.cross(a, b)) > 0.0175 * math.hypot(*a) * math.hypot(*b))
-    return left, right, point
+def stereo_pair(seed: int) -> tuple[Camera, Camera]:
+    """Two cameras of any pose and intrinsics that look roughly the same way, 0.1 to 2 m apart."""
+    rng = np.random.default_rng(seed)
+    T_left_world = pose(Rotation.random(rng=rng).as_matrix(), rng.uniform(-5.0, 5.0, 3))
+    turn = rotation_by_scipy(rng.uniform(-0.25, 0.25, 3), 1.0)
+    T_right_left = pose(turn, rng.uniform(0.1, 2.0) * Rotation.random(rng=rng).as_matrix()[0])
+    left, right = (
+        camera(focal, aspect * focal, cx, cy, skew, T)
+        for T, focal, aspect, cx, cy, skew in zip(
+            (T_left_world, T_right_left @ T_left_world),
+            *(rng.uniform(low, high, 2) for low, high in INTRINSICS),
+            strict=True,
+        )
+    )
+    return left, right
+
+
+def seen_point(seed: int) -> tuple[Camera, Camera, Array]:
+    """Two such cameras, and a point in front of both that they see at an angle of a degree or more."""
+    left, right = stereo_pair(seed)
+    rng = np.random.default_rng(seed + 1)
+    while True:
+        x, y, z = rng.uniform(-0.6, 0.6), rng.uniform(-0.6, 0.6), rng.uniform(0.5, 20.0)
+        point = left.center + z * (left.R.T @ [x, y, 1.0])
+        a, b = point - left.center, point - right.center
+        if right.project(point)[1] > 0.2 and math.hypot(*np.cross(a, b)) > 0.0175 * math.hypot(*a) * math.hypot(*b):
+            return left, right, point
+
+
+seeds = st.integers(0, 2**32 - 1)
+stereo_pairs = st.builds(stereo_pair, seeds)
+seen_points = st.builds(seen_point, seeds)

@@ -24,7 +24,7 @@ def epipole(camera: Camera, other: Camera) -> Array:
     return np.asarray(homogeneous / np.linalg.norm(homogeneous))
 
 
-@given(stereo_pairs())
+@given(stereo_pairs)
 def test_f_is_scaled_as_in_the_contract(pair: Pair) -> None:
     F = fundamental(*pair)
     assert abs(np.linalg.norm(F) - 1.0) < EXACT
@@ -32,7 +32,7 @@ def test_f_is_scaled_as_in_the_contract(pair: Pair) -> None:
     assert np.linalg.svd(F)[1][2] < EXACT
 
 
-@given(seen_points())
+@given(seen_points)
 def test_matching_pixels_satisfy_the_epipolar_constraint(seen: Seen) -> None:
     left, right, point = seen
     p_left, p_right = np.append(left.project(point)[0], 1.0), np.append(right.project(point)[0], 1.0)
@@ -40,7 +40,7 @@ def test_matching_pixels_satisfy_the_epipolar_constraint(seen: Seen) -> None:
     assert abs(p_right @ F @ p_left) <= EXACT * np.linalg.norm(p_left) * np.linalg.norm(p_right)
 
 
-@given(stereo_pairs())
+@given(stereo_pairs)
 def test_the_epipoles_are_the_null_vectors(pair: Pair) -> None:
     left, right = pair
     F = fundamental(left, right)
@@ -48,7 +48,7 @@ def test_the_epipoles_are_the_null_vectors(pair: Pair) -> None:
     np.testing.assert_allclose(F.T @ epipole(right, left), np.zeros(3), rtol=0, atol=EXACT)
 
 
-@given(stereo_pairs())
+@given(stereo_pairs)
 def test_exchanging_the_cameras_transposes_f(pair: Pair) -> None:
     left, right = pair
     F, exchanged = fundamental(left, right), fundamental(right, left)
@@ -56,7 +56,7 @@ def test_exchanging_the_cameras_transposes_f(pair: Pair) -> None:
     np.testing.assert_allclose(exchanged, sign * F.T, rtol=0, atol=EXACT)
 
 
-@given(stereo_pairs())
+@given(stereo_pairs)
 def test_e_has_two_equal_singular_values_and_belongs_to_f(pair: Pair) -> None:
     left, right = pair
     E = essential(left, right)
@@ -66,7 +66,7 @@ def test_e_has_two_equal_singular_values_and_belongs_to_f(pair: Pair) -> None:
     np.testing.assert_allclose(E, np.sign((E * of_f).sum()) * of_f, rtol=0, atol=1e-9)
 
 
-@given(stereo_pairs())
+@given(stereo_pairs)
 def test_e_decomposes_to_the_relative_pose(pair: Pair) -> None:
     left, right = pair
     R_right_left = right.R @ left.R.T
@@ -74,7 +74,7 @@ def test_e_decomposes_to_the_relative_pose(pair: Pair) -> None:
     assert min(np.abs(R - R_right_left).max() for R in (first, second)) < 1e-9
 
 
-@given(seen_points(), st.floats(-50.0, 50.0))
+@given(seen_points, st.floats(-50.0, 50.0))
 def test_lines_run_through_the_match_and_the_epipole(seen: Seen, beside: float) -> None:
     left, right, point = seen
     F = fundamental(left, right)
@@ -90,7 +90,7 @@ def test_lines_run_through_the_match_and_the_epipole(seen: Seen, beside: float) 
         assert abs(line @ [*away, 1.0] - beside) < 1e-6
 
 
-@given(stereo_pairs(), pixels)
+@given(stereo_pairs, pixels)
 def test_lines_are_opencvs(pair: Pair, uv: Array) -> None:
     F = fundamental(*pair)
     for which, line in ((1, epipolar_line_right(F, uv)), (2, epipolar_line_left(F, uv))):

@@ -5,7 +5,7 @@ import math
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from geometry import Array
@@ -50,7 +50,7 @@ def least_by_scan(pair: Pair, uv_left: Array, uv_right: Array, count: int = 4000
     return math.sqrt(squares.min())
 
 
-@given(seen_points(), noises)
+@given(seen_points, noises)
 def test_no_other_method_reprojects_better(seen: Seen, noise: Array) -> None:
     left, right, _ = seen
     measured = noisy(seen, noise)
@@ -63,7 +63,7 @@ def test_no_other_method_reprojects_better(seen: Seen, noise: Array) -> None:
             assert of_best <= of_other + 1e-9
 
 
-@given(seen_points(), noises)
+@given(seen_points, noises)
 def test_the_reprojection_error_is_stationary(seen: Seen, noise: Array) -> None:
     left, right, _ = seen
     measured = noisy(seen, noise)
@@ -78,7 +78,7 @@ def test_the_reprojection_error_is_stationary(seen: Seen, noise: Array) -> None:
         assert np.abs(slope).max() <= 1e-7 * steepest
 
 
-@given(seen_points(), noises)
+@given(seen_points, noises)
 def test_the_point_projects_to_the_corrected_pixels(seen: Seen, noise: Array) -> None:
     left, right, _ = seen
     measured = noisy(seen, noise)
@@ -89,7 +89,7 @@ def test_the_point_projects_to_the_corrected_pixels(seen: Seen, noise: Array) ->
         np.testing.assert_allclose(right.project(found.point)[0], corrected_right, rtol=0, atol=1e-7)
 
 
-@given(stereo_pairs(), pixels, pixels)
+@given(stereo_pairs, pixels, pixels)
 def test_any_two_pixels_are_corrected_as_little_as_can_be(pair: Pair, uv_left: Array, uv_right: Array) -> None:
     assert correction(pair, uv_left, uv_right) <= least_by_scan(pair, uv_left, uv_right) + 1e-9
     corrected_left, corrected_right = correct_matches(*pair, uv_left, uv_right)
@@ -98,13 +98,15 @@ def test_any_two_pixels_are_corrected_as_little_as_can_be(pair: Pair, uv_left: A
     assert abs(p_right @ F @ p_left) <= 1e-12 * np.linalg.norm(p_left) * np.linalg.norm(p_right)
 
 
-@given(stereo_pairs(), pixels, pixels)
+@given(stereo_pairs, pixels, pixels)
 def test_opencv_corrects_no_less(pair: Pair, uv_left: Array, uv_right: Array) -> None:
     F = fundamental(*pair)
-    by_opencv = cv2.correctMatches(F, uv_left.reshape(1, 1, 2), uv_right.reshape(1, 1, 2))
-    moved = math.hypot(*(by_opencv[0].ravel() - uv_left), *(by_opencv[1].ravel() - uv_right))
+    answer = cv2.correctMatches(F, uv_left.reshape(1, 1, 2), uv_right.reshape(1, 1, 2))
+    cv_left, cv_right = (np.asarray(pixel, dtype=np.float64).ravel() for pixel in answer)
+    assume(np.isfinite(cv_left).all() and np.isfinite(cv_right).all())  # OpenCV fails for some pairs
+    moved = math.hypot(*(cv_left - uv_left), *(cv_right - uv_right))
     # OpenCV's pixels satisfy the constraint to its own rounding: what they still miss may be moved as well
-    missed = correction(pair, by_opencv[0].ravel(), by_opencv[1].ravel())
+    missed = correction(pair, cv_left, cv_right)
     assert correction(pair, uv_left, uv_right) <= moved + missed + 1e-9
 
 
@@ -118,7 +120,7 @@ def test_near_an_epipole_too(x: float, y: float, power: float, at_right: bool, u
     right = Camera.from_intrinsics(500.0, 500.0, 300.0, 250.0, 20.0, T_camera_world=T)
     camera, other = (right, left) if at_right else (left, right)
     u, v, w = camera.P @ [*other.center, 1.0]
-    beside = np.array([u, v]) / w + 10.0**power * np.array([x, y])
+    beside: Array = np.array([u, v]) / w + 10.0**power * np.array([x, y])
     uv_left, uv_right = (uv, beside) if at_right else (beside, uv)
     assert correction((left, right), uv_left, uv_right) <= least_by_scan((left, right), uv_left, uv_right) + 1e-9
 

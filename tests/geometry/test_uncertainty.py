@@ -28,7 +28,7 @@ rigs = st.tuples(st.floats(0.05, 2.0), st.floats(200.0, 1500.0))
 depths = st.floats(0.5, 50.0)
 
 
-@given(seen_points())
+@given(seen_points)
 def test_the_jacobian_is_what_small_steps_give(seen: Seen) -> None:
     left, _, point = seen
     step = 1e-6
@@ -40,7 +40,7 @@ def test_the_jacobian_is_what_small_steps_give(seen: Seen) -> None:
     np.testing.assert_allclose(J, np.transpose(differences), rtol=1e-5, atol=1e-5 * np.abs(J).max())
 
 
-@given(seen_points(), st.floats(0.01, 5.0))
+@given(seen_points, st.floats(0.01, 5.0))
 def test_the_covariance_is_the_inverse_of_the_information(seen: Seen, sigma: float) -> None:
     left, right, point = seen
     C = covariance((left, right), point, sigma)
@@ -50,14 +50,14 @@ def test_the_covariance_is_the_inverse_of_the_information(seen: Seen, sigma: flo
     np.testing.assert_allclose(C, sigma**2 * covariance((left, right), point, 1.0), rtol=1e-9)
 
 
-@given(seen_points())
+@given(seen_points)
 def test_a_third_camera_never_hurts(seen: Seen) -> None:
     left, right, point = seen
     shrink = covariance((left, right), point, 1.0) - covariance((left, right, left), point, 1.0)
     assert np.linalg.eigvalsh(shrink).min() >= -1e-9 * np.abs(shrink).max() - 1e-15
 
 
-@given(seen_points())
+@given(seen_points)
 def test_the_axes_are_those_of_the_ellipsoid(seen: Seen) -> None:
     left, right, point = seen
     C = covariance((left, right), point, 1.0)

@@ -21,13 +21,23 @@ def few(sim: AnySim) -> Iterator[tuple[str, Params]]:
 
 
 def bounds(sim: AnySim) -> Iterator[tuple[str, Params]]:
-    """Each number at both its bounds, with the defaults and with each choice."""
-    for chosen in (sim.params(), *_choices(sim.params())):
-        for name in numeric_fields(type(chosen)):
-            value = getattr(chosen, name)
-            for end, bound in zip(("least", "greatest"), chosen.bounds(name), strict=True):
-                at_end = tuple(bound for _ in value) if isinstance(value, tuple) else bound
-                yield f"{_differs(chosen)}, {end} {name}", chosen.moved({name: at_end})
+    """Each number at both its bounds; and for each choice, all numbers at their least and at their greatest."""
+    start: Params = sim.params()
+    numbers = numeric_fields(type(start))
+    for end in (0, 1):
+        for name in numbers:
+            yield f"{ENDS[end]} {name}", start.moved({name: _at_end(start, name, end)})
+        for chosen in _choices(start):
+            extremes = {name: _at_end(chosen, name, end) for name in numbers}
+            yield f"{_differs(chosen)}, all {ENDS[end]}", chosen.moved(extremes)
+
+
+ENDS = ("least", "greatest")
+
+
+def _at_end(params: Params, name: str, end: int) -> Any:
+    value, bound = getattr(params, name), params.bounds(name)[end]
+    return tuple(bound for _ in value) if isinstance(value, tuple) else bound
 
 
 def _choices(start: Params) -> Iterator[Params]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import product
 
@@ -233,15 +234,15 @@ def test_points_of_all_methods_are_where_the_numbers_say(stereo: Rig, params: Tr
     if model.visible("/gap"):
         assert solution.closest_points is not None
         np.testing.assert_allclose(model.points("/gap")[0], solution.closest_points, rtol=1e-6, atol=1e-6)
-        length = float(np.linalg.norm(np.diff(model.points("/gap")[0], axis=0)))
-        assert length == pytest.approx(solution.ray_gap, rel=1e-3, abs=1e-5)
+        length = float(np.linalg.norm(np.diff(solution.closest_points, axis=0)))
+        assert length == pytest.approx(solution.ray_gap, rel=1e-6, abs=1e-9)
 
 
 @each_pair
 def test_ellipsoid_is_the_covariance_and_the_cloud_its_samples(stereo: Rig, params: TriangulationParams) -> None:
     stereo.show(params)
     model, solution = stereo.model, TRIANGULATION.solve(params)
-    np.testing.assert_array_equal(model.points("/cloud"), solution.cloud.astype(np.float32))
+    np.testing.assert_array_equal(model.points("/uncertainty_cloud"), solution.cloud.astype(np.float32))
     if model.visible("/uncertainty"):
         pose = model.world_pose("/uncertainty/ellipsoid")
         np.testing.assert_array_equal(pose[:3, 3], solution.point)
@@ -252,6 +253,32 @@ def test_ellipsoid_is_the_covariance_and_the_cloud_its_samples(stereo: Rig, para
         assert np.linalg.det(pose[:3, :3]) == pytest.approx(1.0)
     else:
         assert solution.ellipsoid_axes is None or solution.vague or not params.show_ellipsoid
+
+
+@each_pair
+def test_close_up_shows_what_is_there_as_much_larger_as_it_says(stereo: Rig, params: TriangulationParams) -> None:
+    stereo.show(params)
+    model, solution = stereo.model, TRIANGULATION.solve(params)
+    if not model.visible("/closeup"):  # nothing that is small, or nothing at all
+        assert solution.point is None or solution.vague or model.visible("/uncertainty_label")
+        return
+    assert solution.point is not None
+    said = re.search(r"×([\d.e+]+)", model.labels()["/closeup/label"])
+    assert said is not None
+    times = float(said[1])
+    assert times > 1.0
+    middle = model.world_pose("/closeup")[:3, 3]
+    places = {f"/closeup/{method}": found.point for method, found in solution.by_method.items()}
+    places["/closeup/true"] = solution.true_point
+    for name, place in places.items():
+        assert model.visible(name) == (place is not None)
+        if place is not None:
+            drawn = (model.world_pose(name)[:3, 3] - middle) / times
+            np.testing.assert_allclose(drawn, place - solution.point, rtol=0, atol=1e-9)
+    if model.visible("/closeup/uncertainty"):
+        assert solution.ellipsoid_axes is not None
+        scale = model.node("/closeup/uncertainty/ellipsoid").props["scale"]
+        np.testing.assert_allclose(scale, 3.0 * times * solution.ellipsoid_axes, rtol=1e-9)
 
 
 @each_pair
