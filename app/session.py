@@ -27,8 +27,10 @@ from sims.kit.sim import Sim, Step
 from sims.kit.viewer import Viewer
 
 log = logging.getLogger("sim3")
-STATE_INTERVAL = 0.1
+STATE_INTERVAL = 0.25
 """Seconds between state messages on the channel while a learner drags."""
+LOADING = 10.0
+"""Seconds that a page may take from its address to its websockets; its session is kept so long at least."""
 UNVISITED = 60.0
 """Seconds that a session without viewers is kept."""
 
@@ -215,13 +217,21 @@ class Sessions:
         if session is None:
             self.sweep()
             if len(self._by_room) >= self._limit:
-                raise Full
+                self._drop_one()
             session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
             session.waiting = watching
             self.counts["opened"] += 1
         elif session.waiting and not watching:
             session.begin(params)
         return session
+
+    def _drop_one(self) -> None:
+        """Make room: forget the session that nobody has looked at for longest. Raises `Full` if all are in use."""
+        before = time.monotonic() - LOADING
+        empty = [(s.left_at, key) for key, s in self._by_room.items() if not s.occupied and s.left_at < before]
+        if not empty:
+            raise Full
+        del self._by_room[min(empty)[1]]
 
     def sweep(self) -> None:
         """Forget sessions that nobody has looked at for a while."""

@@ -60,9 +60,10 @@ def _arc(start: npt.ArrayLike, end: npt.ArrayLike, long_way: bool) -> tuple[Arra
 
 def _along(first: Array, last: Array, axis: Array, turned: Any, t: float | Array) -> Array:
     q = multiply(from_axis_angle(axis, turned), first)
-    if isinstance(t, float):
-        return np.where(t == 1.0, last, q) if q.ndim > 1 else last if t == 1.0 else q
-    return np.where((t == 1.0)[..., None], last, q)
+    if isinstance(t, float) and t not in (0.0, 1.0):
+        return q
+    moment = np.asarray(t)[..., None]
+    return np.where(moment == 0.0, first, np.where(moment == 1.0, last, q))
 
 
 def euler_interpolation(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array) -> Array:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from .arrays import Array, Matrix3, components, cos_sin, each, stack, stack_matrix
 from .errors import GeometryError, as_angle, as_array, as_number
-from .rotations import AXES, as_rotation, unit
+from .rotations import AXES, SMALLEST, as_rotation, unit
 
 
 def axis_quaternion(axis: str, angle: float) -> tuple[float, float, float, float]:
@@ -58,7 +58,7 @@ def _axis_angle(q: list[float]) -> tuple[float, float, float, float]:
     w, x, y, z = q
     length = math.hypot(x, y, z)
     angle = 2.0 * math.atan2(length, w)
-    return (x / length, y / length, z / length, angle) if length != 0.0 else (0.0, 0.0, 1.0, angle)
+    return (0.0, 0.0, 1.0, angle) if length <= SMALLEST else (x / length, y / length, z / length, angle)
 
 
 def from_matrix(R: npt.ArrayLike) -> Array:

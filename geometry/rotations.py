@@ -9,6 +9,7 @@ from .arrays import Array, Mask, Matrix3, components, cos_sin, each, norm, stack
 from .errors import GeometryError, as_angle, as_array, as_finite_array
 
 AXES = ("x", "y", "z")
+SMALLEST = 1e-300  # next to zero, where floats lose their precision
 TOLERANCE = 1e-6  # what rotations read from float32 or from printed matrices still meet
 
 _NEXT = {"x": (0, 1, 2), "y": (1, 2, 0), "z": (2, 0, 1)}
@@ -48,12 +49,12 @@ def unit(vector: npt.ArrayLike, argument: str = "vector") -> Array:
     v = as_array(argument, vector)
     if v.ndim == 1:
         length = math.hypot(*v.tolist())
-        if not 0.0 < length < math.inf:
+        if not SMALLEST < length < math.inf:
             raise GeometryError(argument, v.tolist(), "a finite vector that isn't zero")
         return v / length
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         scale = np.abs(v).max(axis=-1, keepdims=True)
-        scaled = v / np.where(scale > 0.0, scale, np.nan)
+        scaled = v / np.where(scale > SMALLEST, scale, np.nan)
         return scaled / norm(scaled)[..., None]
 
 
@@ -93,7 +94,7 @@ def _axis_angle(r: Matrix3) -> tuple[float, ...]:
     vee = (r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1])
     sine, cosine = 0.5 * math.hypot(*vee), 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1.0)
     angle = math.atan2(sine, cosine)
-    if sine == 0.0 and cosine > 0.0:
+    if sine <= SMALLEST and cosine > 0.0:
         return 0.0, 0.0, 1.0, angle
     if cosine >= 0.0 or math.isnan(cosine):
         return *(component / (2.0 * sine) for component in vee), angle

@@ -274,11 +274,15 @@ class Arc:
         self.label = stage.label(f"{name}/label", "")
         self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
         self.locks = locks
+        self.shown: tuple[Turn, bool] | None = None
         for lock in locks:
             region = stage.lines(f"{name}/lock{lock:.0f}", np.zeros((2, 3)), "warn", width=3.0, dash=(0.03, 0.03))
             region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
 
     def draw(self, turn: Turn, *, near_lock: bool) -> None:
+        if self.shown == (turn, near_lock):
+            return
+        self.shown = (turn, near_lock)
         radians = math.radians(turn.applied)
         self.node.pose(turn.seen)
         visible = abs(turn.applied) > 0.5

@@ -15,6 +15,11 @@ settings.register_profile("sim3", deadline=None)
 settings.load_profile("sim3")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests with a browser come last: from its first use on, Playwright keeps an event loop running here."""
+    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _one_viser_host() -> Iterator[None]:
     """Ends the host that the rigs shared, if one was made, and fails when a task failed on it unseen."""

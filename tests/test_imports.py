@@ -39,6 +39,10 @@ def parse(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+for _path in sources("geometry", "sims", "app", "tests"):
+    parse(_path)  # now: after deep recursion in other tests, CPython 3.11's parser may fail
+
+
 def imports(tree: ast.AST, package: tuple[str, ...]) -> Iterator[tuple[int, str]]:
     """Line and full dotted name of each import, relative ones resolved against `package`.
 

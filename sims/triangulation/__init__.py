@@ -40,7 +40,7 @@ SIM = Sim(
     typed=(
         Typed(
             "/point", "3D point", "Sets both image points exactly, as dragging the point in the scene does",
-            (-20.0, 0.0, -20.0), (20.0, 100.0, 20.0), model.held_point,
+            model.NEAREST, model.FARTHEST, model.held_point,
         ),
     ),
     states={

@@ -27,12 +27,13 @@ NAMES: dict[Method, str] = {"dlt": "DLT", "midpoint": "mid-point", "optimal": "o
 WIDTH, HEIGHT = 640, 480
 LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
 SAMPLES = 300
+NEAREST, FARTHEST = (-60.0, 0.0, -50.0), (60.0, 100.0, 50.0)
+"""Places, in metres, that can be typed."""
 LAST_SEED = 9999
 PICTURE_WIDTH = 0.4
 """Metres that a picture is wide where it stands in the scene."""
-ROOMY = 0.43
-LARGEST = 1.4
-"""Cameras are drawn as large as the baseline (metres) has room for, up to so many times their own size."""
+BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
+"""Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
 
 
 class TriangulationParams(Params):
@@ -174,9 +175,9 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
 def rig(baseline: float, focal: float) -> Rig:
     """The cameras of a baseline in metres and a focal length in pixels."""
     left, right = parallel_rig(baseline, focal)
-    size = min(baseline / ROOMY, LARGEST)
+    size, width = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
     upright = Camera(left.K, np.eye(4))
-    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * size * focal / WIDTH)
+    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * width * focal / WIDTH)
     return Rig(left, right, fundamental(left, right), corners, size)
 
 
@@ -271,11 +272,11 @@ def hold_right(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, An
 
 
 def held_point(p: TriangulationParams, s: TriangulationSolution) -> tuple[float, float, float] | None:
-    """The point without noise."""
+    """The point without noise, where its coordinates say something."""
     if s.target is None:
         return None
     x, y, z = s.target.tolist()
-    return x, y, z
+    return (x, y, z) if y <= FARTHEST[1] else None
 
 
 def new_sample(p: TriangulationParams) -> dict[str, Any]:

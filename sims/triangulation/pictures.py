@@ -20,6 +20,8 @@ MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 LONG_ENOUGH = 40.0
 """Pixels that the arrow of an error should be long."""
 SEEN_ERROR = 5e-4
+NO_DEPTH = 4.0
+"""Metres for which the plot has room when there is no point."""
 
 
 def panes(p: TriangulationParams, s: TriangulationSolution, palette: Palette) -> Sequence[Pane]:
@@ -66,23 +68,29 @@ def _picture(
 
 def _error_in_words(error: float | None, times: int) -> str:
     if error is None:
-        return "no point to project"
+        return "no point"
     drawn = f", arrow ×{times}" if times > 1 else ""
     return f"error {quantity(error, 'px', 2)}{drawn}"
 
 
 def _plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
-    depth, sigma = s.depth or 4.0, s.depth_sigma
-    y_max = room(sigma or float(depth_sigma(depth, p.baseline, p.focal, s.sigma_px)), 1.8)
-    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=room(depth, 1.5), y_max=y_max)
-    for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
-        plot.curve(_curve(times * p.baseline, p.focal, s.sigma_px, plot.x_max, y_max), words, ghost=times != 1.0)
+    depth, sigma = s.depth, s.depth_sigma
     noise = f"at {quantity(s.sigma_px, 'px', 2)} noise"
-    if s.depth is None or sigma is None:
-        return plot.pane(noise)
-    words = f"{quantity(s.depth, 'm', 2)} ± {quantity(sigma, 'm')}"
-    plot.mark(s.depth, sigma, words)
+    if depth is None or sigma is None or s.vague:
+        return _curves(p, s, NO_DEPTH, float(depth_sigma(NO_DEPTH, p.baseline, p.focal, s.sigma_px))).pane(noise)
+    plot = _curves(p, s, depth, sigma)
+    words = f"{quantity(depth, 'm', 2)} ± {quantity(sigma, 'm')}"
+    plot.mark(depth, sigma, words)
     return plot.pane(f"{words} {noise}")
+
+
+def _curves(p: TriangulationParams, s: TriangulationSolution, depth: float, sigma: float) -> Plot:
+    """With room for a depth and its uncertainty; half and twice the baseline are ghosts."""
+    end, top = room(depth, 1.5), room(sigma, 1.8)
+    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=end, y_max=top)
+    for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
+        plot.curve(_curve(times * p.baseline, p.focal, s.sigma_px, end, top), words, ghost=times != 1.0)
+    return plot
 
 
 @lru_cache(maxsize=256)

@@ -15,8 +15,6 @@ from sims.triangulation.closeup import CloseUp
 from sims.triangulation.model import (
     METHODS,
     NAMES,
-    PICTURE_WIDTH,
-    WIDTH,
     Pixel,
     TriangulationParams,
     TriangulationSolution,
@@ -76,7 +74,7 @@ class TriangulationScene:
             self.drop.pieces(np.array([[(x, y, z), (x, y, 0.0)], [(x - 0.1, y, 0.0), (x + 0.1, y, 0.0)]]))
 
     def _gap(self, s: TriangulationSolution) -> None:
-        seen = s.point is not None and s.closest_points is not None and s.ray_gap > 0.0
+        seen = s.point is not None and s.by_method["midpoint"].point is not None and s.ray_gap > 0.0
         self.gap.show(seen)
         if seen and s.closest_points is not None:
             self.gap.path(s.closest_points)
@@ -122,7 +120,7 @@ class Eye:
         self.figure.node.pose(LEVEL, (x, 0.0, 1.0))
         self.figure.draw(cameras.corners, cameras.size)
         along = np.array([*sight, 1.0])
-        self.pixel.pose(position=along * (PICTURE_WIDTH * cameras.size * p.focal / WIDTH))
+        self.pixel.pose(position=along * cameras.corners.item(0, 2))
         self.pixel.scale(cameras.size)
         reach = FAR if s.depth is None else 1.12 * s.depth + 0.15
         self.ray.path([np.zeros(3), along * reach])

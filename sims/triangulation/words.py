@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-
-import numpy as np
 
 from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 from sims.triangulation.model import NAMES, SAMPLES, TriangulationParams, TriangulationSolution
@@ -13,7 +12,7 @@ VERY_FAR = 1e4
 """Metres of depth from which on coordinates say nothing."""
 TROUBLE = {
     "parallel": "Parallel rays: no finite point. The disparity is zero, as for something infinitely far away.",
-    "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind the cameras.",
+    "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind the cameras, {behind}.",
     "undefined": "The pixels are too far away to mean anything.",
 }
 
@@ -36,12 +35,15 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
         yield _noise(p, s)
 
 
-FB_OVER_D = "<mfrac><mrow><mi>f</mi><mi>b</mi></mrow><mi>d</mi></mfrac>"
+FB_OVER_D = '<mstyle displaystyle="true"><mfrac><mrow><mi>f</mi><mi>b</mi></mrow><mi>d</mi></mfrac></mstyle>'
 
 
 def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
     if s.status != "found":
-        yield Note(TROUBLE[s.status], "warn")
+        behind = (
+            f"{quantity(-s.closest_points.item(0, 1), 'm', 2)} away" if s.closest_points is not None else "far away"
+        )
+        yield Note(TROUBLE[s.status].format(behind=behind), "warn")
     elif s.vague:
         yield Note("Almost parallel rays: a standard deviation of the depth is larger than the depth itself.", "warn")
     elif s.depth is not None and s.depth_sigma is not None and 3.0 * s.depth_sigma > s.depth:
@@ -56,10 +58,12 @@ def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
     for name, words in NAMES.items():
         found = s.by_method[name]
         errors = (found.reprojection_left, found.reprojection_right, found.reprojection_rms)
-        apart = "–" if found.point is None or s.point is None else _length(float(np.linalg.norm(found.point - s.point)))
+        apart = found.status if found.point is None else "–"
+        if found.point is not None and s.point is not None:
+            apart = _length(math.dist(found.point, s.point))
         cells = [figure(e, 3) if e is not None else "–" for e in errors]
         rows.append((f"{words} ✓" if name == p.method else words, cells[0], cells[1], cells[2], apart))
-    return Table("Reprojection error in pixels, and how far apart from the result", rows)
+    return Table("Reprojection error in pixels, and distance from the result", rows)
 
 
 def _length(metres: float) -> str:
@@ -67,13 +71,12 @@ def _length(metres: float) -> str:
 
 
 def _uncertainty(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
-    if s.covariance is None or s.ellipsoid_axes is None or s.depth_sigma is None:
+    if s.covariance is None or s.ellipsoid_axes is None or s.depth_sigma is None or s.vague:
         return
     assumed = f"for {quantity(s.sigma_px, 'px', 2)} of noise"
     yield Formula(f"Standard deviation of the depth, {assumed}", symbol("σ", "Z"), mathml(s.depth_sigma), "m")
-    if not s.vague:
-        yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
-        yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
+    yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
+    yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
 
 
 def _noise(p: TriangulationParams, s: TriangulationSolution) -> Note:

@@ -141,9 +141,7 @@ def test_name_of_a_missing_sim_is_escaped(http: httpx.Client) -> None:
 
 
 def test_a_full_server_says_so() -> None:
-    with Local(max_sessions=2) as local:
-        for _ in range(2):
-            assert local.http.get(f"/sims/{SLUG}/embed", follow_redirects=True).status_code == 200
+    with Local(max_sessions=2) as local, Page(local.url) as one, Page(local.url) as other:
         answer = local.http.get(f"/sims/{SLUG}/embed", follow_redirects=True)
         assert answer.status_code == 503
         assert "minute" in answer.text
@@ -156,6 +154,8 @@ def test_a_full_server_says_so() -> None:
             json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 900, "controls": True, "query": ""})
         )
         assert closed(channel) == 1013
+        one.works()
+        other.works()
 
 
 # ---- websockets

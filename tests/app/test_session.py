@@ -446,14 +446,36 @@ def test_rooms_do_not_see_each_other() -> None:
 
 
 def test_no_more_rooms_than_the_limit() -> None:
-    sim, _ = toy()
-    sessions = Sessions(2)
-    for room in ("a", "b"):
-        sessions.open(sim, room, ToyParams())
-    with pytest.raises(Full):
+    async def test() -> None:
+        sim, _ = toy()
+        sessions = Sessions(2)
+        eyes = {room: viewer() for room in ("a", "b")}
+        for room, eye in eyes.items():
+            sessions.open(sim, room, ToyParams()).join(eye)
+        with pytest.raises(Full):
+            sessions.open(sim, "c", ToyParams())
+        known = sessions.find(sim, "a")
+        assert known is not None
+        assert sessions.open(sim, "a", ToyParams()) is known
+        known.leave(viewer=eyes["a"])
+        with pytest.raises(Full):
+            sessions.open(sim, "c", ToyParams())  # its page may be loading anew
+        known.left_at -= session.UNVISITED - 1.0
         sessions.open(sim, "c", ToyParams())
-    sessions.open(sim, "a", ToyParams())
-    assert len(sessions) == 2
+        assert sessions.find(sim, "a") is None, "the one that nobody looks at makes place"
+        assert sessions.find(sim, "b") is not None
+        assert len(sessions) == 2
+
+    run(test)
+
+
+def test_of_rooms_that_nobody_visits_the_one_left_longest_makes_place() -> None:
+    sim, _ = toy()
+    sessions = Sessions(3)
+    for age, room in enumerate(("new", "old", "older")):
+        sessions.open(sim, room, ToyParams()).left_at -= session.UNVISITED - 4.0 + age
+    sessions.open(sim, "next", ToyParams())
+    assert [room for room in ("new", "old", "older", "next") if sessions.find(sim, room)] == ["new", "old", "next"]
 
 
 def test_rooms_that_nobody_visits_are_swept(monkeypatch: pytest.MonkeyPatch) -> None:

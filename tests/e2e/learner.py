@@ -11,13 +11,19 @@ import json
 import time
 from collections.abc import Callable
 from typing import Any, TypeVar
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
 import numpy.typing as npt
 from playwright.sync_api import (
-    BrowserContext, ConsoleMessage, Error, Frame, Locator, Page, Request, TimeoutError, WebSocket,
+    BrowserContext,
+    ConsoleMessage,
+    Frame,
+    Locator,
+    Page,
+    Request,
+    WebSocket,
 )  # fmt: skip
 
 from sims import by_slug
@@ -216,9 +222,10 @@ class Learner:
         for key in keys:
             thumb.press(key)
 
-    def type(self, name: str, text: str) -> None:
-        """Type into the number box of a control, and leave it with Enter."""
-        field = self.control("textbox", name).last
+    def type(self, name: str, text: str, *, box: int = 0) -> None:
+        """Type into the number box of a control (of a vector's boxes, the one counted from 1), and press Enter."""
+        which = f", {box} of 2" if box else ""
+        field = self.frame.get_by_role("textbox", name=self.label(name) + which, exact=True)
         field.fill(text)
         field.press("Enter")
 
@@ -247,10 +254,10 @@ class Learner:
         self.until(settled)
         return self.solved()
 
-    def reads(self, name: str, value: npt.ArrayLike) -> bool:
+    def reads(self, name: str, value: npt.ArrayLike, digits: int = 3) -> bool:
         """Whether the read-outs show a number, vector or matrix under a name."""
         formulas: list[list[str]] = self.frame.evaluate(FORMULAS)
-        wanted = [figure(v) for v in np.ravel(np.asarray(value, dtype=float)).tolist()]
+        wanted = [figure(v, digits) for v in np.ravel(np.asarray(value, dtype=float)).tolist()]
         return [name, *wanted] in formulas
 
     def spoken(self) -> str:

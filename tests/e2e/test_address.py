@@ -30,15 +30,20 @@ def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom
     learner.reload()
     solution = learner.sees(yaw=30, roll=-77, frame="extrinsic")
     assert urlsplit(learner.address).path == room
-    learner.until(lambda: np.testing.assert_allclose(
-        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
-    ))
+    learner.until(
+        lambda: np.testing.assert_allclose(
+            learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+        )
+    )
 
     learner.press("Reset")
     learner.sees(yaw=45, pitch=20, roll=10, frame="intrinsic")
-    assert set().union(*(parse_qs(urlsplit(a).query) for a in learner.addresses)) <= {"yaw", "pitch", "roll", "frame"}, (
-        "at no moment, not even while it loads, does the address hold anything but the state"
-    )
+    assert set().union(*(parse_qs(urlsplit(a).query) for a in learner.addresses)) <= {
+        "yaw",
+        "pitch",
+        "roll",
+        "frame",
+    }, "at no moment, not even while it loads, does the address hold anything but the state"
 
 
 def test_back_and_forward_keep_working(classroom: Classroom) -> None:
@@ -78,7 +83,9 @@ def test_the_sim_page_follows_the_sim(classroom: Classroom) -> None:
 
 
 def test_share_gives_a_link_to_the_same_state(classroom: Classroom) -> None:
-    learner = classroom.open("euler-angles/embed?order=zxz&view=4,1,2,0,0,0", permissions=["clipboard-read", "clipboard-write"])
+    learner = classroom.open(
+        "euler-angles/embed?order=zxz&view=4,1,2,0,0,0", permissions=["clipboard-read", "clipboard-write"]
+    )
     learner.type("yaw", "123")
     solution = learner.sees(yaw=123, order="zxz")
     learner.press("Share link")

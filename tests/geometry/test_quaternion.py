@@ -82,7 +82,11 @@ def test_the_smallest_turns_keep_axis_and_angle(axis: Array, angle: float) -> No
 
 
 def test_no_turn_has_axis_z() -> None:
-    for q, turn in (([1.0, 0.0, 0.0, 0.0], 0.0), ([-1.0, 0.0, 0.0, 0.0], 2.0 * math.pi)):
+    for q, turn in (
+        ([1.0, 0.0, 0.0, 0.0], 0.0),
+        ([1.0, 5e-324, 5e-324, 0.0], 1e-323),
+        ([-1.0, 0.0, 0.0, 0.0], 2.0 * math.pi),
+    ):
         axis, angle = quaternion.to_axis_angle(q)
         assert (axis.tolist(), float(angle)) == ([0.0, 0.0, 1.0], turn)
 

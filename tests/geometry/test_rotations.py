@@ -96,6 +96,12 @@ def test_an_axis_turns_nothing_on_itself(axis: Array) -> None:
     np.testing.assert_allclose(axis_angle_to_matrix(axis, 1.0) @ axis, axis, rtol=0, atol=EXACT)
 
 
+def test_a_turn_too_small_for_floats_to_hold_has_axis_z() -> None:
+    axis, angle = matrix_to_axis_angle(axis_angle_to_matrix([0.0, 1.0, 1.0], 5e-324))
+    assert axis.tolist() == [0.0, 0.0, 1.0]
+    assert 0.0 < angle < 1e-300
+
+
 def test_the_identity_has_axis_z_and_a_half_turn_the_positive_axis() -> None:
     axis, angle = matrix_to_axis_angle(np.eye(3))
     assert (axis.tolist(), float(angle)) == ([0.0, 0.0, 1.0], 0.0)
@@ -181,7 +187,9 @@ def test_a_vector_of_any_length_but_zero_has_a_direction(v: Array, power: float)
     assert np.isnan(batch[1:]).all()
 
 
-@pytest.mark.parametrize("axis", [[0.0, 0.0, 0.0], [math.nan, 0.0, 1.0], [math.inf, 0.0, 0.0], [1.0, 0.0]])
+@pytest.mark.parametrize(
+    "axis", [[0.0, 0.0, 0.0], [math.nan, 0.0, 1.0], [math.inf, 0.0, 0.0], [1.0, 0.0], [0.0, 1e-310, 0.0]]
+)
 def test_a_zero_axis_is_refused(axis: list[float]) -> None:
     with pytest.raises(GeometryError, match="axis"):
         axis_angle_to_matrix(axis, 1.0)

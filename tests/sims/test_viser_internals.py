@@ -15,13 +15,14 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
 import viser
 import websockets.asyncio.server
 from viser import _messages
+from viser._assignable_props_api import AssignablePropsBase
 from viser._gui_handles import _GuiHandleState
 from viser._scene_handles import _SceneNodeHandleState, _set_pose_vector
 from viser.infra._infra import WebsockClientConnection, WebsockServer
@@ -45,6 +46,8 @@ from tests.server import Rig
 
 VISER = Path(viser.__file__).parent
 PINNED = {
+    "_assignable_props_api",
+    "_prop_hints",
     "_gui_input_handle_from_uuid",
     "_impl",
     "_live_connections",
@@ -99,6 +102,18 @@ def test_handles_keep_state_where_we_read_it() -> None:
     assert {"name", "props", "api", "wxyz", "position", "visible"} <= names
     names = {f.name for f in dataclasses.fields(_GuiHandleState)}
     assert {"uuid", "value", "props", "gui_api"} <= names
+
+
+def test_type_hints_of_a_handle_are_those_that_viser_would_work_out(rig: Rig) -> None:
+    source = inspect.getsource(inspect.getmodule(AssignablePropsBase) or AssignablePropsBase)
+    assert "return get_type_hints(type(self._impl.props))" in source
+    frame, label = rig.host.call(
+        lambda: (rig.browser.client.scene.add_frame("/hints"), rig.browser.client.scene.add_label("/hints/x", "x"))
+    )
+    for handle in (frame, label):
+        assert handle._prop_hints == get_type_hints(type(handle._impl.props))
+    assert frame._prop_hints is not label._prop_hints
+    rig.host.call(frame.remove)
 
 
 @pytest.mark.parametrize(

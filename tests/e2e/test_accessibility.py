@@ -1,0 +1,106 @@
+"""For everybody: axe finds nothing, the keyboard reaches everything and shows where it is, and changes are spoken."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Frame, Page
+
+from sims import SIMS
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner
+
+TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+# Tab through the page: of each stop its name, and what its looks are with the focus.
+STOP = """() => {
+  const stop = document.activeElement;
+  const seen = (node) => {
+    const { outlineStyle, outlineWidth, outlineColor, boxShadow, borderColor, backgroundColor, fill } = getComputedStyle(node);
+    return [outlineStyle === "none" ? "" : outlineStyle + outlineWidth + outlineColor, boxShadow, borderColor, backgroundColor, fill];
+  };
+  const looks = () => JSON.stringify([stop, ...stop.querySelectorAll(".s3-ring, span")].map(seen));
+  window.stops ??= [];
+  if (stop === document.body || window.stops.some((other) => other.stop === stop)) return false;
+  window.stops.push({ stop, looks, focused: looks() });
+  return true;
+}"""
+STOPS = """() => {
+  document.activeElement.blur();
+  return stops.map(({ stop, looks, focused }) => ({
+    role: stop.getAttribute("role") ?? stop.tagName.toLowerCase(),
+    name: stop.getAttribute("aria-label") ?? stop.textContent.trim(),
+    handle: stop.dataset.handle ?? "",
+    seen: looks() !== focused,
+    html: stop.outerHTML.slice(0, 300),
+  }));
+}"""
+
+
+def axe(page: Page) -> list[str]:
+    """What axe finds, in words."""
+    found: dict[str, Any] = Axe().run(page, options={"runOnly": TAGS, "resultTypes": ["violations"]}).response
+    return [
+        f"{rule['id']} ({rule['impact']}): {node['target']} {node['html'][:200]}"
+        for rule in found["violations"]
+        for node in rule["nodes"]
+    ]
+
+
+def walk(frame: Frame, page: Page) -> list[dict[str, Any]]:
+    """Where the Tab key leads, once round."""
+    for _ in range(80):
+        page.keyboard.press("Tab")
+        if not frame.evaluate(STOP):
+            break
+    stops: list[dict[str, Any]] = frame.evaluate(STOPS)
+    return stops
+
+
+def names_of_controls(learner: Learner) -> set[str]:
+    """What a keyboard must reach: everything of the panel that takes a value, or does something."""
+    kinds = ("GuiSliderMessage", "GuiDropdownMessage", "GuiButtonMessage", "GuiCheckboxMessage", "GuiNumberMessage")
+    return {element.label for element in learner.scene.ordered() if element.kind in kinds}
+
+
+@pytest.mark.parametrize("slug", [sim.slug for sim in SIMS])
+def test_a_sim_is_for_everybody(classroom: Classroom, slug: str) -> None:
+    learner = classroom.open(f"{slug}/embed")
+    assert axe(learner.page) == []
+
+    stops = walk(learner.frame, learner.page)
+    reached = {stop["name"] for stop in stops}
+    assert names_of_controls(learner) <= reached, "the keyboard doesn't reach every control"
+    assert {"Share link", "Save picture"} <= reached
+    handles = learner.frame.locator("[data-handle]").evaluate_all("all => all.map((one) => one.dataset.handle)")
+    assert {*handles} <= {stop["handle"] for stop in stops}
+    assert [stop for stop in stops if not stop["name"]] == [], "controls without a name"
+    assert [stop["html"] for stop in stops if not stop["seen"]] == [], "focus can't be seen"
+
+    before = learner.until(learner.spoken)
+    slider = next(e.label for e in learner.scene.ordered() if e.kind == "GuiSliderMessage")
+    learner.frame.get_by_role("slider", name=slider, exact=True).press("ArrowRight")
+    learner.until(lambda: learner.spoken() not in ("", before))
+    canvas = learner.frame.get_by_role("img", name="3D scene")
+    assert learner.spoken() in (canvas.get_attribute("aria-label") or "")
+
+
+def test_a_sim_in_the_dark_is_for_everybody(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed?theme=dark&right_uv=410,210")
+    assert axe(learner.page) == []
+    learner.open("euler-angles/embed?theme=dark&pitch=90")
+    assert axe(learner.page) == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_pages_are_for_everybody(classroom: Classroom, theme: str) -> None:
+    learner = classroom.enter()
+    for path in ["/", *(f"/sims/{sim.slug}" for sim in SIMS)]:
+        learner.page.goto(f"{learner.url}{path}?theme={theme}" if path != "/" else f"{learner.url}/?theme={theme}")
+        found = axe(learner.page)
+        assert found == [], path
+    learner.witness.expect("status of 4")
+    for path in ("/sims/euler-angles?yaw=999", "/sims/nothing"):
+        learner.page.goto(learner.url + path)
+        assert axe(learner.page) == [], path

@@ -1,0 +1,58 @@
+"""Animations: they play, stop at the first touch, and step where the reader wants no motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+
+SMALL = {"width": 640, "height": 480}
+
+
+def progress(learner: Learner, since: int = 0) -> list[float]:
+    """How far the sequence was in each state that the server told."""
+    return [message["params"]["progress"] for message in learner.sockets.told[since:]]
+
+
+def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL)
+    watcher = classroom.open(learner.address, size=SMALL)
+    watcher.sees(yaw=90)
+    turned: list[float] = []
+    learner.press("Animate sequence")
+    learner.until(lambda: turned.append(learner.scene.world_pose("/turn1")[0, 0]) or learner.params["progress"] == 3)
+    learner.sees(yaw=90, progress=3)
+    watcher.sees(yaw=90, progress=3)
+    for viewer in (learner, watcher):
+        seen = progress(viewer)
+        start = seen.index(min(seen[1:]))
+        assert seen[start] < 1, "it begins with no turn applied"
+        assert np.all(np.diff(seen[start:]) >= 0), "it goes forward"
+        assert len({v for v in seen if 0 < v < 3}) >= 4, "it moves and doesn't jump"
+    assert len({round(c, 3) for c in turned}) >= 4, "the aircraft turned little by little"
+
+    thumb = box(learner.control("slider", "roll"))
+    learner.press("Animate sequence")
+    learner.until(lambda: 0 < learner.params["progress"] < 2)
+    mouse = learner.page.mouse
+    mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
+    mouse.down()
+    mouse.move(thumb["x"] - 20, thumb["y"] + thumb["height"] / 2, steps=3)
+    mouse.up()
+    learner.until(lambda: learner.params["roll"] < 0)
+    learner.page.wait_for_timeout(500)  # the last of the drag
+    stopped = learner.sockets.state
+    assert stopped["params"]["progress"] < 3
+    learner.type("pitch", "-10")
+    learner.sees(pitch=-10, progress=stopped["params"]["progress"])
+    assert learner.sockets.state["version"] == stopped["version"] + 1, "it went on after the touch"
+
+
+def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL, reduced_motion="reduce")
+    since = len(learner.sockets.told)
+    learner.press("Animate sequence")
+    learner.until(lambda: learner.params["progress"] == 0)
+    learner.until(lambda: learner.params["progress"] == 3)
+    assert set(progress(learner, since)) == {0, 1, 2, 3}

@@ -1,0 +1,88 @@
+"""On a phone: everything is on the screen, by touch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import Picture
+
+PHONE = {"width": 390, "height": 780}
+TOUCH = {"has_touch": True, "is_mobile": True, "device_scale_factor": 1}
+
+
+def touch(learner: Learner, *path: tuple[float, float]) -> None:
+    """Put a finger down, draw it along a path, and lift it."""
+    cdp = learner.page.context.new_cdp_session(learner.page)
+    for k, (x, y) in enumerate(path):
+        kind = "touchMove" if k else "touchStart"
+        cdp.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
+    cdp.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    cdp.detach()
+
+
+def fits(learner: Learner) -> None:
+    width, scroll = learner.frame.evaluate("[innerWidth, document.documentElement.scrollWidth]")
+    assert width == 390
+    assert scroll <= width, "the page scrolls sideways"
+
+
+def sheet_top(learner: Learner) -> float:
+    """Where viser's bottom sheet begins."""
+    return box(learner.control("combobox", "order" if learner.slug == "euler-angles" else "method"))["y"]
+
+
+def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
+    learner = classroom.open("euler-angles/embed?yaw=60&pitch=-30", size=PHONE, **TOUCH)
+    fits(learner)
+    ends = learner.scene.points("/turn1/turn2/turn3/arrows")
+    tips = ends[:, 0] + 0.94 * (ends[:, 1] - ends[:, 0])
+    top = sheet_top(learner)
+
+    def look() -> None:
+        picture = Picture(learner)
+        for axis, tip in zip("xyz", tips, strict=True):
+            x, y = picture.place(tip)
+            assert 0 < x < 390, f"the {axis} axis is off the screen"
+            assert 0 < y < top, f"the sheet covers the {axis} axis"
+        assert picture.shows("x", tips[0])
+        assert picture.shows("z", tips[2])
+
+    learner.until(look)
+
+    thumb = box(learner.control("slider", "roll"))
+    x, y = thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2
+    touch(learner, (x, y), (x + 10, y), (x + 25, y), (x + 40, y))
+    learner.until(lambda: learner.params["roll"] > 40)
+    solution = learner.sees(yaw=60, pitch=-30)
+    learner.until(lambda: np.testing.assert_allclose(
+        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+    ))
+    learner.control("combobox", "frame").tap()
+    learner.frame.get_by_role("option", name="Extrinsic: fixed axes").tap()
+    learner.sees(frame="extrinsic")
+
+    before = learner.sockets.camera["position"]
+    touch(learner, (100, 100), (130, 110), (160, 120), (190, 130))
+    learner.until(lambda: not np.allclose(learner.sockets.camera["position"], before, atol=0.05))
+    fits(learner)
+
+
+def test_triangulation_on_a_phone(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed", size=PHONE, **TOUCH)
+    fits(learner)
+    handle = learner.frame.locator("[data-handle=left_uv] .s3-core")
+    handle.scroll_into_view_if_needed()
+    at = box(handle)
+    scale = box(learner.frame.locator("svg[data-pane=left]"))["width"] / 640
+    x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+    assert learner.frame.evaluate("([x, y]) => !!document.elementFromPoint(x, y).closest('[data-handle]')", [x, y]), (
+        "something covers the left point"
+    )
+    touch(learner, (x, y), (x + 4, y), (x + 10, y + 2), (x + 16, y + 4))
+    learner.until(lambda: learner.params["left_uv"][0] > 410 + 8 / scale)
+    moved = learner.params["left_uv"]
+    np.testing.assert_allclose(moved, [410 + 16 / scale, 210 + 4 / scale], atol=2 / scale)
+    learner.sees(right_uv=[320, 210])
+    fits(learner)

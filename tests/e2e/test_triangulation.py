@@ -1,0 +1,212 @@
+"""triangulation: hands on the point in the scene, the points in the pictures and the panel, down to the pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import Picture, project
+
+Array = npt.NDArray[np.float64]
+METHODS = ("dlt", "midpoint", "optimal")
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs, pictures and scene say the same; the solution."""
+    solution = learner.sees(**expected)
+    learner.until(lambda: drawn(learner, solution))
+    if solution["point"] is not None:
+        assert learner.until(lambda: learner.reads("X", solution["point"]))
+    assert learner.until(lambda: learner.reads("d", solution["disparity"], 2))
+    for side in ("left", "right"):
+        handle = learner.frame.locator(f"[data-handle={side}_uv]")
+        place = [float(handle.get_attribute(f"data-{k}") or "nan") for k in "xy"]
+        assert place == learner.params[f"{side}_uv"]
+    return solution
+
+
+def drawn(learner: Learner, solution: dict[str, Any]) -> None:
+    """The frames that this browser received put everything where the solution says."""
+    scene, baseline = learner.scene, learner.params["baseline"]
+    for method in METHODS:
+        point = solution["by_method"][method]["point"]
+        assert scene.visible(f"/{method}") == (point is not None)
+        if point is not None:
+            np.testing.assert_allclose(scene.world_pose(f"/{method}")[:3, 3], point, rtol=0, atol=1e-6)
+    assert scene.visible("/point") == (solution["target"] is not None)
+    if solution["target"] is not None:
+        np.testing.assert_allclose(scene.world_pose("/point")[:3, 3], solution["target"], rtol=0, atol=1e-6)
+    for side, sign in (("left", -1), ("right", 1)):
+        centre = [sign * baseline / 2, 0, 1]
+        np.testing.assert_allclose(scene.world_pose(f"/{side}")[:3, 3], centre, rtol=0, atol=1e-6)
+        start, end = scene.points(f"/{side}/ray")[0]
+        np.testing.assert_allclose(start, centre, rtol=0, atol=1e-6)
+        sight = pixel_of(end, learner.params, sign)
+        np.testing.assert_allclose(sight, solution[f"measured_{side}"], rtol=0, atol=1e-3)
+
+
+def pixel_of(world: npt.ArrayLike, params: dict[str, Any], sign: int) -> Array:
+    """Where the left (-1) or right (+1) camera sees a point: parallel cameras at a height of 1 m, looking along Y."""
+    x, y, z = np.asarray(world, dtype=float)
+    f = params["focal"]
+    return np.array([320 + f * (x - sign * params["baseline"] / 2) / y, 240 - f * (z - 1) / y])
+
+
+def grip(learner: Learner) -> tuple[float, float]:
+    """Pixel on the page of the point that can be dragged."""
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    return project(learner.scene.world_pose("/point")[:3, 3], learner.sockets.camera, canvas)
+
+
+def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float, *, key: str = "") -> None:
+    """Press the mouse at a place, move it, and let go; the key is held meanwhile."""
+    mouse, keyboard = learner.page.mouse, learner.page.keyboard
+    x, y = start
+    mouse.move(x - 3, y - 3)
+    mouse.move(x, y)
+    if key:
+        keyboard.down(key)
+    mouse.down()
+    mouse.move(x + dx, y + dy, steps=8)
+    mouse.up()
+    if key:
+        keyboard.up(key)
+
+
+def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed")
+    solution = agree(learner, left_uv=[410, 210], right_uv=[320, 210])
+    np.testing.assert_allclose(solution["point"], [0.3, 4, 1.2], atol=1e-9)
+    before = np.array(solution["point"])
+    camera = dict(learner.sockets.camera)
+
+    x, y = grip(learner)
+    pull(learner, (x, y), 24, -30)
+    learner.until(lambda: learner.params["left_uv"] != [410, 210])
+    learner.until(lambda: np.testing.assert_allclose(grip(learner), [x + 24, y - 30], atol=3))
+    solution = agree(learner)
+    after = np.array(solution["point"])
+    forward = np.subtract(camera["look_at"], camera["position"])
+    assert abs((after - before) @ forward / np.linalg.norm(forward)) < 0.02, "it moves in the plane that faces the viewer"
+    for side, sign in (("left", -1), ("right", 1)):
+        np.testing.assert_allclose(learner.params[f"{side}_uv"], pixel_of(after, learner.params, sign), atol=1e-6)
+    np.testing.assert_allclose(learner.sockets.camera["position"], camera["position"], atol=1e-9)
+    shown(learner)
+
+    x, y = grip(learner)
+    pull(learner, (x, y), 4, 40, key="Shift")
+    learner.until(lambda: not np.allclose(learner.solved()["point"], after, atol=0.05))
+    step = np.abs(np.subtract(agree(learner)["point"], after))
+    assert np.count_nonzero(step > 1e-6) == 1, "with Shift it moves along one axis"
+
+    version = learner.sockets.state["version"]
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    pull(learner, (canvas["x"] + 40, canvas["y"] + canvas["height"] - 40), 60, -10)
+    learner.until(lambda: not np.allclose(learner.sockets.camera["position"], camera["position"], atol=0.01))
+    assert learner.sockets.state["version"] == version, "a drag on empty space turns the view, and nothing else"
+    shown(learner)
+
+
+def shown(learner: Learner) -> None:
+    """On the screen: the rays in the colours of their cameras, ending at the point, which has the colour of the held."""
+
+    def look() -> None:
+        picture = Picture(learner)
+        for side in ("left", "right"):
+            start, end = learner.scene.points(f"/{side}/ray")[0]
+            spots = [start + t * (end - start) for t in (0.35, 0.5, 0.65)]
+            assert any(picture.shows(side, spot, within=2) for spot in spots), f"no {side} ray: {picture.around(spots[1])}"
+        at = learner.scene.world_pose("/point")[:3, 3]
+        assert picture.shows("held", at, within=12), f"nothing to hold: {picture.around(at)}"
+
+    learner.until(look)
+
+
+def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed")
+    frame = learner.frame
+    scale = box(frame.locator("svg[data-pane=left]"))["width"] / 640
+    core = box(frame.locator("[data-handle=left_uv] .s3-core"))
+    pull(learner, (core["x"] + core["width"] / 2, core["y"] + core["height"] / 2), 20, -6)
+    learner.until(lambda: np.testing.assert_allclose(
+        learner.params["left_uv"], [410 + 20 / scale, 210 - 6 / scale], atol=1.5
+    ))
+    solution = agree(learner, right_uv=[320, 210])
+    assert solution["ray_gap"] > 0.001, "rays of pixels in different rows miss each other"
+    assert solution["by_method"]["optimal"]["reprojection_rms"] <= solution["by_method"]["dlt"]["reprojection_rms"]
+    cells = frame.locator(".s3-table tr").nth(1).locator("td").all_text_contents()
+    assert cells[0] == f"{solution['by_method']['dlt']['reprojection_left']:.3f}"
+
+    handle = frame.locator("[data-handle=right_uv]")
+    handle.focus()
+    for key, place in (("ArrowRight", [321, 210]), ("Shift+ArrowUp", [321, 200]), ("Alt+ArrowLeft", [320.9, 200])):
+        learner.page.keyboard.press(key)
+        agree(learner, right_uv=place)
+        focused = frame.evaluate("document.activeElement.dataset.handle")
+        assert focused == "right_uv", "the focus stays on the point when the picture is drawn anew"
+    learner.page.keyboard.press("Shift+ArrowDown")
+    agree(learner, right_uv=[320.9, 210])
+
+
+def test_each_control_of_triangulation_answers(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed")
+    learner.press_keys("baseline", "ArrowRight")
+    first = agree(learner, baseline=0.61)
+    learner.type("focal", "800")
+    agree(learner, focal=800)
+    learner.type("left_uv", "400.5", box=1)
+    learner.type("right_uv", "215", box=2)
+    agree(learner, left_uv=[400.5, 210], right_uv=[320, 215])
+    learner.choose("method", "optimal")
+    solution = agree(learner, method="optimal")
+    assert solution["point"] == solution["by_method"]["optimal"]["point"]
+    assert learner.scene.visible("/optimal/filled")
+    assert not learner.scene.visible("/dlt/filled")
+
+    assert learner.scene.visible("/uncertainty")
+    learner.control("checkbox", "show_ellipsoid").click()
+    agree(learner, show_ellipsoid=False)
+    learner.until(lambda: not learner.scene.visible("/uncertainty"))
+
+    learner.press("New sample")
+    noisy = agree(learner, noise=1, seed=1)
+    learner.press("New sample")
+    other = agree(learner, noise=1, seed=2)
+    assert other["point"] != noisy["point"]
+    learner.type("seed", "1")
+    assert agree(learner, noise=1, seed=1) == noisy, "the same seed, the same noise"
+    learner.press("Noise on or off")
+    agree(learner, noise=0)
+
+    boxes = learner.frame.get_by_role("textbox", name="3D point")
+    boxes.nth(0).fill("-0.5")
+    boxes.nth(0).press("Enter")
+    moved = learner.until(lambda: solved_at(learner, -0.5))
+    agree(learner)
+    np.testing.assert_allclose(moved[0], -0.5, atol=1e-3)
+
+    learner.press("Reset")
+    assert agree(learner, baseline=0.6, focal=600, left_uv=[410, 210], right_uv=[320, 210], method="dlt") != first
+
+
+def solved_at(learner: Learner, x: float) -> list[float]:
+    point: list[float] = learner.solved()["point"]
+    assert point[0] == pytest.approx(x, abs=0.01)
+    return point
+
+
+def test_parallel_rays_are_said_where_they_happen(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed?right_uv=409,210")
+    learner.frame.locator("[data-handle=right_uv]").press("ArrowRight")
+    solution = agree(learner, left_uv=[410, 210], right_uv=[410, 210])
+    assert solution["point"] is None
+    assert any("parallel rays" in text for text in learner.scene.labels().values())
+    learner.frame.get_by_text("Parallel rays: no finite point").wait_for()
+    learner.until(lambda: "arallel rays" in learner.spoken())
+    learner.frame.locator("[data-handle=right_uv]").press("ArrowLeft")
+    assert agree(learner, right_uv=[409, 210])["point"] is not None
