@@ -247,9 +247,16 @@ document.addEventListener("focusin", (event) => {
   focused = grip ? grip.dataset.handle : null;
 });
 
+// At once, and not with the next picture: under software rendering that may be several keys away.
+function keepFocus() {
+  if (!focused || document.activeElement !== document.body) return;
+  document.querySelector(`[data-handle="${focused}"]`)?.focus({ preventScroll: true });
+}
+
 let tidying = false;
 
 new MutationObserver(() => {
+  keepFocus();
   if (tidying) return;
   tidying = true;
   requestAnimationFrame(() => {
@@ -257,9 +264,6 @@ new MutationObserver(() => {
     nameControls(document);
     markSliders();
     dismissSoftwareNotice();
-    if (focused && !document.activeElement?.closest?.("[data-handle]") && document.activeElement === document.body) {
-      document.querySelector(`[data-handle="${focused}"]`)?.focus({ preventScroll: true });
-    }
     goLive();
   });
 }).observe(document.body, { childList: true, subtree: true });

@@ -33,15 +33,15 @@ class CameraFigure:
         flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
         self._picture = stage.mesh(f"{name}/picture", flat, role, opacity=0.12, side="double", flat=True)
         self._letter = stage.label(f"{name}/letter", letter)
-        self._corners = b""
+        self._corners: npt.NDArray[np.float64] | None = None
 
     def draw(self, corners: npt.NDArray[np.float64], size: float = 1.0) -> None:
         """Show the picture's corners (4, 3), round it, in the camera's axes; `size` scales the body."""
         for solid in self._solids:
             solid.scale(size)
         self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
-        if corners.tobytes() != self._corners:
-            self._corners = corners.tobytes()
+        if corners is not self._corners:
+            self._corners = corners
             edges = np.zeros((8, 2, 3))
             edges[:4, 1] = edges[4:, 0] = corners
             edges[4:, 1] = np.roll(corners, -1, axis=0)

@@ -45,8 +45,8 @@ class Node:
         turned: Any = self._pose[0] if wxyz is None else tuple(map(float, wxyz))
         moved: Any = self._pose[1] if position is None else tuple(map(float, position))
         if (turned, moved) != self._pose:  # a tenth of the cost of asking viser's arrays
-            self._pose = (turned, moved)
-            set_pose(self.handle, turned, moved)
+            was, self._pose = self._pose, (turned, moved)
+            set_pose(self.handle, turned if turned != was[0] else None, moved if moved != was[1] else None)
 
     def show(self, visible: bool) -> None:
         set_visible(self.handle, visible)
@@ -85,6 +85,7 @@ class Lines(Node):
         self._dash = dash
         self._count = len(handle.points)
         self._arc: tuple[float, float, float] | None = None
+        self._stroke: tuple[Sequence[float], Sequence[float]] | None = None
 
     def path(self, points: npt.ArrayLike) -> None:
         """Draw a polyline through points of shape (n, 3)."""
@@ -97,11 +98,29 @@ class Lines(Node):
             set_property(self.handle, "colors", np.broadcast_to(self._rgb, pieces.shape).copy())
         set_property(self.handle, "points", pieces.astype(np.float32))
 
+    def stroke(self, start: Sequence[float], end: Sequence[float]) -> None:
+        """Draw one undashed piece."""
+        if (start, end) != self._stroke:
+            self._stroke = start, end
+            set_property(self.handle, "points", np.array([(start, end)], np.float32))
+
     def arc(self, radius: float, angle: float, start: float = 0.0) -> None:
         """Draw a circular arc in the node's own xy plane, counter-clockwise from its x axis (radians)."""
         if self._arc != (radius, angle, start):
             self._arc = radius, angle, start
             self.pieces(arc_pieces(radius, angle, start, self._dash))
+
+
+class Strokes(Node):
+    """Straight pieces, each in a colour of its own, that move at once."""
+
+    _shown: Sequence[Sequence[Sequence[float]]] = ()
+
+    def draw(self, pieces: Sequence[Sequence[Sequence[float]]]) -> None:
+        """Two ends for each piece."""
+        if pieces != self._shown:
+            self._shown = pieces
+            set_property(self.handle, "points", np.array(pieces, np.float32))
 
 
 class Label(Node):
@@ -219,6 +238,14 @@ class Stage:
             thickness=width, thickness_units="screen",
         )  # fmt: skip
         return Lines(handle, rgb, dash)
+
+    def strokes(self, name: str, roles: Sequence[str], *, width: float = 2.0) -> Strokes:
+        """One straight piece in the colour of each role; they begin without length."""
+        colors = np.array([[self.palette.line(role)] * 2 for role in roles], np.uint8)
+        handle = self.scene.add_line_segments(
+            name, points=np.zeros(colors.shape), colors=colors, thickness=width, thickness_units="screen"
+        )
+        return Strokes(handle)
 
     def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrow:
         """An arrow from tail to tip."""

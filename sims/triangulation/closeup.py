@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -19,6 +21,9 @@ LEAST = 1.5
 """Magnification below which it shows nothing more than the scene does."""
 DOT = 0.06
 """Radius of a shape in it, as part of the glass's."""
+STEPS = 4
+"""Sizes of the glass for each doubling of the depth."""
+Place = list[float]
 
 
 class CloseUp:
@@ -28,70 +33,85 @@ class CloseUp:
         self.node = stage.group("/closeup")
         self.glass = stage.ball("/closeup/glass", 1.0, "ghost", opacity=0.08, side="back")
         self.string = stage.lines("/closeup/string", np.zeros((2, 3)), "ghost", width=1.2)
-        self.rays = [stage.lines(f"/closeup/ray_{side}", np.zeros((2, 3)), side, width=1.8) for side in SIDES]
-        self.gap = stage.lines("/closeup/gap", np.zeros((2, 3)), "held", width=4.0)
+        self.rays = stage.strokes("/closeup/rays", ("left", "right", "held"), width=2.0)
         self.shapes = {name: Shape(stage, f"/closeup/{name}", name) for name in METHODS}
         self.names = {name: stage.label(f"/closeup/{name}/label", NAMES[name]) for name in METHODS}
         self.true = stage.ball("/closeup/true", 1.0, "held")
-        self.region = Region(stage, "/closeup/uncertainty", 0.009)
+        self.region = Region(stage, "/closeup/uncertainty", 0.009, opacity=0.3)
         self.label = stage.label("/closeup/label", "")
         self.gap_label = stage.label("/closeup/gap_label", "")
+        self.radius = 0.0
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> bool:
         """Whether it is there."""
-        times = magnification(s)
-        self.node.show(times >= LEAST)
-        if s.point is None or s.depth is None or times < LEAST:
+        if s.point is None or s.depth is None or s.vague:
+            self.node.show(False)
             return False
-        radius = RADIUS * s.depth
-        self.node.pose(position=s.point + np.array([0.0, 0.0, HEIGHT * s.depth]))
-        self.glass.scale(radius)
-        self.string.path([(0.0, 0.0, -radius), (0.0, 0.0, -HEIGHT * s.depth)])
-        self._rays(s, radius, times)
+        depth = 2.0 ** (round(STEPS * math.log2(s.depth)) / STEPS)
+        self._resize(RADIUS * depth, HEIGHT * depth)
+        origin = s.point.tolist()
+        places = {name: _from(origin, s.by_method[name].point) for name in METHODS}
+        true = _from(origin, s.true_point)
+        times = self._magnification(s, [*places.values(), true])
+        self.node.show(times >= LEAST)
+        if times < LEAST:
+            return False
+        x, y, z = origin
+        self.node.pose(position=(x, y, z + HEIGHT * depth))
         for name, shape in self.shapes.items():
-            found = s.by_method[name].point
-            shape.draw(found, name == p.method, DOT * radius, s.point, times)
-            apart = 0.0 if found is None else times * math.dist(found, s.point)
-            self.names[name].show(apart > 0.15 * radius)
-            self.names[name].pose(position=(0.0, 0.0, (-3.0 if name == "midpoint" else 3.0) * DOT * radius))
-        self.true.show(s.true_point is not None)
-        if s.true_point is not None:
-            self.true.pose(position=times * (s.true_point - s.point))
-            self.true.scale(0.8 * DOT * radius)
-        self.region.draw(p, s, times)
-        self.label.pose(position=(0.0, 0.0, 1.15 * radius))
+            place = _larger(times, places[name])
+            shape.draw(place, name == p.method, DOT * self.radius)
+            self.names[name].show(place is not None and math.hypot(*place) > 0.15 * self.radius)
+        self.true.show(true is not None)
+        if true is not None:
+            self.true.pose(position=_larger(times, true))
+        self._rays(s, origin, times)
+        self.region.draw(p, s, (0.0, 0.0, 0.0), times)
         self.label.text(f"close-up ×{times:g}" + (", 3σ" if p.show_ellipsoid else ""))
-        self.gap_label.pose(position=(0.0, 0.0, -1.15 * radius))
-        self.gap_label.text(gap_in_words(s))
         self.gap_label.show(s.ray_gap > SEEN_GAP)
+        self.gap_label.text(gap_in_words(s))
         return True
 
-    def _rays(self, s: TriangulationSolution, radius: float, times: float) -> None:
-        if s.closest_points is None or s.point is None:
+    def _resize(self, radius: float, height: float) -> None:
+        if radius == self.radius:
             return
-        near = times * (s.closest_points - s.point)
-        for ray, at, (x, down) in zip(self.rays, near, (s.sight_left, s.sight_right), strict=True):
-            ray.path(chord(at, np.array([x, 1.0, -down]), radius))
-        self.gap.path(near)
+        self.radius = radius
+        self.glass.scale(radius)
+        self.true.scale(0.8 * DOT * radius)
+        self.string.stroke((0.0, 0.0, -radius), (0.0, 0.0, -height))
+        self.label.pose(position=(0.0, 0.0, 1.15 * radius))
+        self.gap_label.pose(position=(0.0, 0.0, -1.15 * radius))
+        for name, label in self.names.items():
+            label.pose(position=(0.0, 0.0, (-3.0 if name == "midpoint" else 3.0) * DOT * radius))
+
+    def _magnification(self, s: TriangulationSolution, places: Sequence[Place | None]) -> float:
+        """The largest round one at which everything still fits the glass."""
+        longest = 0.0 if s.ellipsoid_axes is None else SIGMAS * s.ellipsoid_axes.item(0)
+        room = self.radius / max(s.ray_gap, longest, *(math.hypot(*place) for place in places if place is not None))
+        return MAGNIFICATIONS[max(bisect_right(MAGNIFICATIONS, room) - 1, 0)]
+
+    def _rays(self, s: TriangulationSolution, origin: Place, times: float) -> None:
+        if s.closest_points is None:
+            return
+        near = [_larger(times, _from(origin, point)) or origin for point in s.closest_points]
+        left, right = (
+            chord(at, (x, 1.0, -down), self.radius)
+            for at, (x, down) in zip(near, (s.sight_left, s.sight_right), strict=True)
+        )
+        self.rays.draw((left, right, near))
 
 
-SIDES = ("left", "right")
+def _from(origin: Place, point: Array | None) -> Place | None:
+    return None if point is None else [a - b for a, b in zip(point.tolist(), origin, strict=True)]
 
 
-def chord(at: Array, along: Array, radius: float) -> Array:
-    """The part (2, 3) of a line that is inside the glass; a point of it where it misses."""
-    a, b, c = float(along @ along), float(along @ at), float(at @ at) - radius**2
-    half = math.sqrt(max(b * b - a * c, 0.0))
-    return np.array([at + (-b - half) / a * along, at + (-b + half) / a * along])
+def _larger(times: float, place: Place | None) -> Place | None:
+    return None if place is None else [times * v for v in place]
 
 
-def magnification(s: TriangulationSolution) -> float:
-    """The largest round one at which everything still fits the glass; 0 where there is nothing to show."""
-    if s.point is None or s.depth is None or s.vague:
-        return 0.0
-    others = [found.point for found in s.by_method.values() if found.point is not None]
-    others += [] if s.true_point is None else [s.true_point]
-    apart = [math.dist(other, s.point) for other in others]
-    widest = max(*apart, s.ray_gap, SIGMAS * float(s.ellipsoid_axes[0]) if s.ellipsoid_axes is not None else 0.0)
-    room = RADIUS * s.depth / max(widest, 1e-9)
-    return max((m for m in MAGNIFICATIONS if m <= room), default=0.0)
+def chord(at: Place, along: Sequence[float], radius: float) -> tuple[Place, Place]:
+    """The ends of what a glass holds of a line; a point of it where it misses."""
+    a, b = sum(v * v for v in along), sum(u * v for u, v in zip(at, along, strict=True))
+    half = math.sqrt(max(b * b - a * (sum(v * v for v in at) - radius**2), 0.0))
+    start, end = ([u + t / a * v for u, v in zip(at, along, strict=True)] for t in (-b - half, -b + half))
+    return start, end

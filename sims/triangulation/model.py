@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from geometry import quaternion
 from geometry import triangulation as tri
 from geometry.arrays import Array
 from geometry.camera import Camera, parallel_rig
@@ -108,7 +109,8 @@ class TriangulationSolution:
     sigma_px: float
     covariance: Array | None
     ellipsoid_axes: Array | None
-    ellipsoid_directions: Array | None
+    ellipsoid_orientation: Array | None
+    """Quaternion that turns X, Y, Z to its axes."""
     depth_sigma: float | None
     parallax_angle: float
     in_front: bool
@@ -219,12 +221,12 @@ def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -
 
 
 def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, Any]:
-    names = ("covariance", "ellipsoid_axes", "ellipsoid_directions", "depth_sigma")
+    names = ("covariance", "ellipsoid_axes", "ellipsoid_orientation", "depth_sigma")
     known = None if point is None else _existing(tri.covariance((cameras.left, cameras.right), point, sigma))
     if known is None:
         return {"sigma_px": sigma, **dict.fromkeys(names)}
     lengths, directions = tri.ellipsoid_axes(known)
-    values = known, lengths, directions, math.sqrt(known.item(1, 1))
+    values = known, lengths, quaternion.from_matrix(directions), math.sqrt(known.item(1, 1))
     return {"sigma_px": sigma, **dict(zip(names, values, strict=True))}
 
 

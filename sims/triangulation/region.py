@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
 
-from geometry import quaternion
 from sims.kit.readout import quantity
 from sims.kit.stage import Stage
 from sims.triangulation.model import NO_POINTS, TriangulationParams, TriangulationSolution
@@ -12,6 +11,7 @@ from sims.triangulation.model import NO_POINTS, TriangulationParams, Triangulati
 SIGMAS = 3.0
 SEEN_GAP = 0.0005
 """Metres between the rays from which on it is said that they miss."""
+HERE = (0.0, 0.0, 0.0)
 
 
 def gap_in_words(s: TriangulationSolution) -> str:
@@ -22,25 +22,23 @@ def gap_in_words(s: TriangulationSolution) -> str:
 class Region:
     """The ellipsoid and the cloud, as they are, or `times` as large round the result."""
 
-    def __init__(self, stage: Stage, path: str, dot: float) -> None:
+    def __init__(self, stage: Stage, path: str, dot: float, opacity: float) -> None:
         self.node = stage.group(path)
-        self.ball = stage.ball(f"{path}/ellipsoid", 1.0, "ink", opacity=0.3)
-        self.axis = stage.lines(f"{path}/axis", np.zeros((2, 3)), "ink", width=2.0)
+        self.ball = stage.ball(f"{path}/ellipsoid", 1.0, "ink", opacity=opacity)
         self.cloud = stage.cloud(f"{path}_cloud", NO_POINTS, "ink", size=dot)
         self.shown = NO_POINTS, 0.0
 
-    def draw(self, p: TriangulationParams, s: TriangulationSolution, times: float | None = None) -> None:
-        """Without `times` in the world's coordinates, else in those of a node at the result."""
-        origin = 0.0 if times is None or s.point is None else s.point
-        times = times or 1.0
-        if s.cloud is not self.shown[0] or times != self.shown[1]:
+    def draw(
+        self, p: TriangulationParams, s: TriangulationSolution, place: Sequence[float], times: float = 0.0
+    ) -> None:
+        """With the ellipsoid at a place: in the world, or `times` as large in the coordinates of a node at the result."""
+        if s.cloud is not self.shown[0] or (times != self.shown[1] and len(s.cloud)):
             self.shown = s.cloud, times
-            self.cloud.points(times * (s.cloud - origin))
+            self.cloud.points(times * (s.cloud - s.point) if times and s.point is not None else s.cloud)
         self.node.show(p.show_ellipsoid and s.ellipsoid_axes is not None and not s.vague)
-        if s.ellipsoid_axes is None or s.ellipsoid_directions is None or s.point is None:
+        if s.ellipsoid_axes is None or s.ellipsoid_orientation is None:
             return
-        a, b, c = (times * SIGMAS * s.ellipsoid_axes).tolist()
-        turn = quaternion.from_matrix(s.ellipsoid_directions).tolist()
-        self.node.pose(turn, (times * (s.point - origin)).tolist())
-        self.ball.scale((a, b, c))
-        self.axis.path([(-a, 0.0, 0.0), (a, 0.0, 0.0)])
+        longer = SIGMAS * (times or 1.0)
+        a, b, c = s.ellipsoid_axes.tolist()
+        self.node.pose(s.ellipsoid_orientation.tolist(), place)
+        self.ball.scale((longer * a, longer * b, longer * c))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -16,6 +17,7 @@ from sims.triangulation.model import (
     METHODS,
     NAMES,
     Pixel,
+    Rig,
     TriangulationParams,
     TriangulationSolution,
     rig,
@@ -29,6 +31,7 @@ FAR = 12.0
 BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
 RADIUS = 0.06
+FAR_AWAY = (0.0, 0.0, 0.0)
 
 
 class TriangulationScene:
@@ -40,57 +43,58 @@ class TriangulationScene:
         self.baseline = stage.lines("/baseline", np.zeros((2, 3)), "ink", width=2.0)
         self.baseline_label = stage.label("/baseline/label", "", (0.0, -0.1, 0.45))
         self.points = {name: Shape(stage, f"/{name}", name) for name in METHODS}
-        self.point_label = stage.label("/result_label", "")
-        self.drop = stage.lines("/drop", np.zeros((2, 3)), "ghost", width=1.2)
+        self.label = stage.group("/result")
+        self.words = stage.label("/result/label", "", (0.0, 0.0, -0.22))
+        self.drop = stage.lines("/result/drop", np.zeros((2, 3)), "ghost", width=1.2)
         self.gap = stage.lines("/gap", np.zeros((2, 3)), "held", width=5.0)
         self.gap_label = stage.label("/gap/label", "")
         self.grip = stage.grip("/point", 0.75 * RADIUS, halo=2.8)
         self.true_label = stage.label("/point/label", "true point", (0.0, 0.0, 0.1), anchor="bottom-right")
-        self.region = Region(stage, "/uncertainty", 0.004)
+        self.region = Region(stage, "/uncertainty", 0.004, opacity=0.45)
         self.closeup = CloseUp(stage)
         self.warning = stage.label("/warning", "")
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
-        for eye, sight, side in zip(self.eyes, (s.sight_left, s.sight_right), (-0.5, 0.5), strict=True):
-            eye.draw(p, s, sight, side * p.baseline)
-        self.baseline.path([(-0.5 * p.baseline, 0.0, 1.0), (0.5 * p.baseline, 0.0, 1.0)])
+        cameras = rig(p.baseline, p.focal)
+        half = 0.5 * p.baseline
+        for eye, sight, x in zip(self.eyes, (s.sight_left, s.sight_right), (-half, half), strict=True):
+            eye.draw(cameras, s, sight, x)
+        self.baseline.stroke((-half, 0.0, 1.0), (half, 0.0, 1.0))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
-        self._points(p, s)
-        self.region.draw(p, s)
+        self._held(s)
+        for name, shape in self.points.items():
+            found = s.by_method[name].point
+            shape.draw(None if found is None else found.tolist(), name == p.method, RADIUS)
+        at = FAR_AWAY if s.point is None else s.point.tolist()
+        self.region.draw(p, s, at)
         self._gap(s)
-        self._in_words(p, s, self.closeup.draw(p, s))
+        self._in_words(p, s, at, self.closeup.draw(p, s))
         self._warn(s)
 
-    def _points(self, p: TriangulationParams, s: TriangulationSolution) -> None:
-        for name, shape in self.points.items():
-            shape.draw(s.by_method[name].point, name == p.method, RADIUS)
+    def _held(self, s: TriangulationSolution) -> None:
         self.grip.show(s.target is not None)
         self.true_label.show(s.true_point is not None)
         if s.target is not None:
             self.grip.pose(position=s.target.tolist())
-        self.drop.show(s.point is not None)
-        if s.point is not None:
-            x, y, z = s.point.tolist()
-            self.drop.pieces(np.array([[(x, y, z), (x, y, 0.0)], [(x - 0.1, y, 0.0), (x + 0.1, y, 0.0)]]))
 
     def _gap(self, s: TriangulationSolution) -> None:
-        seen = s.point is not None and s.by_method["midpoint"].point is not None and s.ray_gap > 0.0
+        seen = s.by_method["midpoint"].point is not None and s.ray_gap > 0.0 and s.point is not None
         self.gap.show(seen)
         if seen and s.closest_points is not None:
-            self.gap.path(s.closest_points)
+            self.gap.stroke(*s.closest_points.tolist())
 
-    def _in_words(self, p: TriangulationParams, s: TriangulationSolution, closeup: bool) -> None:
-        """What the close-up says where there is one, and the result."""
+    def _in_words(self, p: TriangulationParams, s: TriangulationSolution, at: Sequence[float], closeup: bool) -> None:
+        """The result, and what the close-up says where there is one."""
         self.gap_label.show(s.point is not None and not closeup and s.ray_gap > SEEN_GAP)
-        self.point_label.show(s.point is not None)
-        if s.point is None:
-            return
+        self.label.show(s.point is not None)
+        x, y, z = at
+        self.label.pose(position=(x, y, z))
+        self.drop.stroke((0.0, 0.0, 0.0), (0.0, 0.0, -z))
         if not closeup:
-            self.gap_label.pose(position=s.point + np.array([0.0, 0.0, 0.45]))
+            self.gap_label.pose(position=(x, y, z + 0.45))
             self.gap_label.text(gap_in_words(s))
-        self.point_label.pose(position=s.point - np.array([0.0, 0.0, 0.22]))
         unsure = f" ± {figure(s.depth_sigma, 2)}" if s.depth_sigma is not None and not s.vague else ""
-        self.point_label.text(f"{NAMES[p.method]}: depth {figure(s.point.item(1), 2)}{unsure}{THIN}m")
+        self.words.text(f"{NAMES[p.method]}: depth {figure(y, 2)}{unsure}{THIN}m")
 
     def _warn(self, s: TriangulationSolution) -> None:
         self.warning.show(s.point is None or s.vague)
@@ -115,16 +119,16 @@ class Eye:
         self.ray = stage.lines(f"{path}/ray", np.zeros((2, 3)), name, width=1.8)
         self.back = stage.lines(f"{path}/back", np.zeros((2, 3)), name, width=1.5, dash=(0.08, 0.08))
 
-    def draw(self, p: TriangulationParams, s: TriangulationSolution, sight: Pixel, x: float) -> None:
-        cameras = rig(p.baseline, p.focal)
-        self.figure.node.pose(LEVEL, (x, 0.0, 1.0))
+    def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
+        self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
         self.figure.draw(cameras.corners, cameras.size)
-        along = np.array([*sight, 1.0])
-        self.pixel.pose(position=along * cameras.corners.item(0, 2))
+        x, y = sight
+        near = cameras.corners.item(0, 2)
+        self.pixel.pose(position=(x * near, y * near, near))
         self.pixel.scale(cameras.size)
-        reach = FAR if s.depth is None else 1.12 * s.depth + 0.15
-        self.ray.path([np.zeros(3), along * reach])
-        meeting = 0.0 if s.closest_points is None else s.closest_points.item(0, 1)
+        far = FAR if s.depth is None else 1.12 * s.depth + 0.15
+        self.ray.stroke((0.0, 0.0, 0.0), (x * far, y * far, far))
         self.back.show(s.status == "behind")
         if s.status == "behind":
-            self.back.path([np.zeros(3), along * max(meeting, -BACKWARD)])
+            back = max(0.0 if s.closest_points is None else s.closest_points.item(0, 1), -BACKWARD)
+            self.back.path([(0.0, 0.0, 0.0), (x * back, y * back, back)])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import trimesh
 
-from geometry.arrays import Array
 from sims.kit.stage import Stage
 from sims.triangulation.model import METHODS, Method
 
@@ -26,21 +27,19 @@ BODIES = {name: _shape(name) for name in METHODS}
 
 
 class Shape:
-    """A point, or none; drawn `times` as far from `origin` as it is."""
+    """A point, or none."""
 
     def __init__(self, stage: Stage, path: str, name: Method) -> None:
         self.node = stage.group(path)
         self.filled = stage.mesh(f"{path}/filled", BODIES[name], "ink", flat=name != "optimal")
         self.ghost = stage.mesh(f"{path}/ghost", BODIES[name], "ghost", flat=name != "optimal")
 
-    def draw(
-        self, point: Array | None, chosen: bool, size: float, origin: Array | float = 0.0, times: float = 1.0
-    ) -> None:
+    def draw(self, place: Sequence[float] | None, chosen: bool, size: float) -> None:
         """Show the point of a method; those that aren't chosen are smaller, and hide in the chosen one."""
-        self.node.show(point is not None)
-        if point is None:
+        self.node.show(place is not None)
+        if place is None:
             return
-        self.node.pose(position=(times * (point - origin)).tolist())
+        self.node.pose(position=place)
         self.filled.show(chosen)
         self.ghost.show(not chosen)
         self.filled.scale(size)

@@ -36,8 +36,11 @@ T = TypeVar("T")
 PATIENCE = 120.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
 OPTIONS = ("view", "controls", "theme")
-# three.js, inside viser's client, says so at each start.
-VISERS_OWN_WORDS = ("THREE.Clock: This module has been deprecated",)
+# What viser's client makes the browser say: at each start, and at each drag in the scene.
+VISERS_OWN_WORDS = (
+    "THREE.Clock: This module has been deprecated",
+    "Unable to preventDefault inside passive event listener invocation",
+)
 
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
 FORMULAS = """() => [...document.querySelectorAll(".s3-readouts math")].map(formula => [

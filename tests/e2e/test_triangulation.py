@@ -85,6 +85,11 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     before = np.array(solution["point"])
     camera = dict(learner.sockets.camera)
 
+    shown(learner)
+    at = learner.scene.world_pose("/point")[:3, 3]
+    picture = Picture(learner)
+    assert picture.shows("held", at, within=12), f"nothing to hold: {picture.around(at)}"
+
     x, y = grip(learner)
     pull(learner, (x, y), 24, -30)
     learner.until(lambda: learner.params["left_uv"] != [410, 210])
@@ -113,16 +118,14 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
 
 
 def shown(learner: Learner) -> None:
-    """On the screen: the rays in the colours of their cameras, ending at the point, which has the colour of the held."""
+    """On the screen: the rays in the colours of their cameras."""
 
     def look() -> None:
         picture = Picture(learner)
         for side in ("left", "right"):
             start, end = learner.scene.points(f"/{side}/ray")[0]
             spots = [start + t * (end - start) for t in (0.35, 0.5, 0.65)]
-            assert any(picture.shows(side, spot, within=2) for spot in spots), f"no {side} ray: {picture.around(spots[1])}"
-        at = learner.scene.world_pose("/point")[:3, 3]
-        assert picture.shows("held", at, within=12), f"nothing to hold: {picture.around(at)}"
+            assert any(picture.shows(side, spot, within=2) for spot in spots), f"no {side}: {picture.around(spots[1])}"
 
     learner.until(look)
 
