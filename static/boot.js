@@ -47,10 +47,22 @@
       super(init === location.search ? search : init);
     }
   };
+  if (self.origin === "null") {
+    // In a sandboxed frame Chromium loads no module worker from a blob. viser's client then tries a data address.
+    const Plain = Worker;
+    window.Worker = class extends Plain {
+      constructor(url, options) {
+        if (options?.type === "module" && String(url).startsWith("blob:")) throw new Error("no module worker from a blob");
+        super(url, options);
+      }
+    };
+  }
   const replace = history.replaceState.bind(history);
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
 
   window.sim3 = { ...sim, Query, viewer, dark, path: socket, search: location.search, eye, target };
+  // Else phones widen the page for a menu that stands out at its side for a moment, the menu grows with it, and so on.
+  document.querySelector("meta[name=viewport]").content += ", minimum-scale=1";
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   document.documentElement.style.colorScheme = dark ? "dark" : "light";
 })();

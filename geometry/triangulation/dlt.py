@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Components, components, cross, dot, square_root
+from ..arrays import Array, Components, components, cross, dot, square_root, stack
 from ..camera import Camera
 from ..epipolar import baseline
 from .result import Triangulation, conclude, pixel_pairs
@@ -21,14 +21,19 @@ def triangulate_dlt(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_righ
     """
     between = baseline(left, right)
     pairs, defined = pixel_pairs(uv_left, uv_right)
-    pixels = np.concatenate([left.normalized(pairs[..., :2]), right.normalized(pairs[..., 2:])], axis=-1)
-    P = np.stack([left.T_camera_world, right.T_camera_world])
-    equations = pixels[..., None] * P[[0, 0, 1, 1], 2] - P[:, :2].reshape(4, 4)
-    X = np.linalg.svd(equations)[2][..., 3, :]
     with np.errstate(all="ignore"):
+        rows = [*_equations(left, pairs[..., :2]), *_equations(right, pairs[..., 2:])]
+        X = np.linalg.svd(stack(*rows).reshape(*defined.shape, 4, 4))[2][..., 3, :]
         point = components(X[..., :3] / X[..., 3:])
         parallax = _parallax(left.center.tolist(), between.tolist(), point)
         return Triangulation(*conclude((left, right), point, parallax, True, defined))
+
+
+def _equations(camera: Camera, pixels: Array) -> list[Any]:
+    """Return the eight entries, by rows, of the two equations of a camera."""
+    x, y = components(camera.normalized(pixels))
+    p1, p2, p3, _ = camera.T_camera_world.tolist()
+    return [z * c - a for z, row in ((x, p1), (y, p2)) for a, c in zip(row, p3, strict=True)]
 
 
 def _parallax(center: Components, between: Components, point: Components) -> Any:

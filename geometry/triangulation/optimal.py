@@ -1,5 +1,7 @@
 """The optimal method: move both pixels as little as possible, in all, until their rays meet."""
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -44,7 +46,7 @@ def correct_matches(
     # One scale for both images keeps the least correction what it is, and the numbers near one.
     scale = left.K.item(0, 0)
     x = (pairs - np.concatenate([left.K[:2, 2], right.K[:2, 2]])) / scale
-    F = _unscaled(right, scale).T @ essential(left, right) @ _unscaled(left, scale)
+    F = _scaled_fundamental(left, right)
     with np.errstate(all="ignore"):
         move, settled = _lindstrom(F, components(x))
     if not settled.all():
@@ -52,6 +54,12 @@ def correct_matches(
             move[index] = least_correction(F, x[index])
     corrected = pairs + np.where(defined[..., None], scale * move, np.nan)
     return corrected[..., :2], corrected[..., 2:]
+
+
+@lru_cache(maxsize=64)
+def _scaled_fundamental(left: Camera, right: Camera) -> Array:
+    scale = left.K.item(0, 0)
+    return _unscaled(right, scale).T @ essential(left, right) @ _unscaled(left, scale)
 
 
 def _unscaled(camera: Camera, scale: float) -> Array:

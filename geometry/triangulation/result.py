@@ -1,5 +1,6 @@
 """What a triangulation answers: the point, whether there is one and why not, and how well the rays fix it."""
 
+import math
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
@@ -52,6 +53,10 @@ class Triangulation:
 def pixel_pairs(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> tuple[Array, Mask]:
     """Return pairs of pixels as (..., 4), and a mask (...) of the defined ones; the others become zero."""
     left, right = as_array("uv_left", uv_left, 2), as_array("uv_right", uv_right, 2)
+    if left.ndim == right.ndim == 1:
+        pair = [*left.tolist(), *right.tolist()]
+        one = all(abs(v) <= FARTHEST_PIXEL for v in pair)
+        return np.array(pair if one else [0.0] * 4), np.asarray(one)
     if left.shape != right.shape:
         left, right = np.broadcast_arrays(left, right)
     pairs = np.concatenate([left, right], axis=-1)
@@ -68,11 +73,24 @@ def conclude(
     """
     for camera in cameras:
         ahead = ahead & (dot(camera.R[2].tolist(), point) + camera.t.item(2) > 0.0)
+    if isinstance(parallax, float):
+        return _conclude_one(point, parallax, bool(ahead), bool(defined))
     finite = np.isfinite(point[0] + point[1] + point[2]) & (parallax > PARALLEL)
     found = finite & ahead & defined
     status = np.where(defined, np.where(finite, np.where(ahead, _FOUND, _BEHIND), _PARALLEL), _UNDEFINED)
     parallax = np.where(defined, np.where(finite, parallax, 0.0), np.nan)
     return np.where(found[..., None], stack(*point), np.nan), status, parallax
+
+
+def _conclude_one(
+    point: Components, parallax: float, ahead: bool, defined: bool
+) -> tuple[Array, npt.NDArray[np.int_], Array]:
+    """As `conclude`, for one pair: a tenth of the time."""
+    finite = math.isfinite(sum(point)) and parallax > PARALLEL
+    status = _UNDEFINED if not defined else _PARALLEL if not finite else _FOUND if ahead else _BEHIND
+    found = np.array(point if status == _FOUND else [math.nan] * 3)
+    angle = math.nan if not defined else parallax if finite else 0.0
+    return found, np.asarray(status), np.asarray(angle)
 
 
 def reprojection_errors(

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, components, if_positive, stack
+from ..arrays import Array, components, dot, if_positive, stack
 from ..camera import Camera
 from ..errors import GeometryError, as_array, as_number
 from .optimal import triangulate_optimal
@@ -23,8 +23,9 @@ def projection_jacobian(camera: Camera, points: npt.ArrayLike) -> Array:
     x, y, z = components(camera.to_camera(points))
     (fx, skew, _), (_, fy, _), _ = camera.K.tolist()
     w = 1.0 / if_positive(z)
-    rows = stack(fx * w, skew * w, -(fx * x + skew * y) * w * w, 0.0 * w, fy * w, -fy * y * w * w)
-    return rows.reshape(*rows.shape[:-1], 2, 3) @ camera.R
+    u, v = (fx * w, skew * w, -(fx * x + skew * y) * w * w), (0.0 * w, fy * w, -fy * y * w * w)
+    rows = stack(*(dot(by_camera, axis) for by_camera in (u, v) for axis in camera.R.T.tolist()))
+    return rows.reshape(*rows.shape[:-1], 2, 3)
 
 
 def covariance(cameras: Sequence[Camera], point: npt.ArrayLike, sigma_px: float) -> Array:

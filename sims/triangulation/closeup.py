@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Array
 from sims.kit.stage import Stage
 from sims.triangulation.model import METHODS, NAMES, TriangulationParams, TriangulationSolution
-from sims.triangulation.region import SEEN_GAP, SIGMAS, Region, gap_in_words
+from sims.triangulation.region import SEEN_GAP, SIGMAS, Region, gap_in_words, in_steps
 from sims.triangulation.shapes import Shape
 
 RADIUS, HEIGHT = 0.19, 0.36
@@ -21,8 +21,8 @@ LEAST = 1.5
 """Magnification below which it shows nothing more than the scene does."""
 DOT = 0.06
 """Radius of a shape in it, as part of the glass's."""
-STEPS = 4
-"""Sizes of the glass for each doubling of the depth."""
+PLACES = 12
+"""Decimals of a place: what differs by rounding alone isn't drawn anew."""
 Place = list[float]
 
 
@@ -47,7 +47,7 @@ class CloseUp:
         if s.point is None or s.depth is None or s.vague:
             self.node.show(False)
             return False
-        depth = 2.0 ** (round(STEPS * math.log2(s.depth)) / STEPS)
+        depth = in_steps(s.depth)
         self._resize(RADIUS * depth, HEIGHT * depth)
         origin = s.point.tolist()
         places = {name: _from(origin, s.by_method[name].point) for name in METHODS}
@@ -106,7 +106,7 @@ def _from(origin: Place, point: Array | None) -> Place | None:
 
 
 def _larger(times: float, place: Place | None) -> Place | None:
-    return None if place is None else [times * v for v in place]
+    return None if place is None else [round(times * v, PLACES) for v in place]
 
 
 def chord(at: Place, along: Sequence[float], radius: float) -> tuple[Place, Place]:

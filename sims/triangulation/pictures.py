@@ -77,26 +77,19 @@ def _plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
     depth, sigma = s.depth, s.depth_sigma
     noise = f"at {quantity(s.sigma_px, 'px', 2)} noise"
     if depth is None or sigma is None or s.vague:
-        return _curves(p, s, NO_DEPTH, float(depth_sigma(NO_DEPTH, p.baseline, p.focal, s.sigma_px))).pane(noise)
-    plot = _curves(p, s, depth, sigma)
-    words = f"{quantity(depth, 'm', 2)} ± {quantity(sigma, 'm')}"
-    plot.mark(depth, sigma, words)
-    return plot.pane(f"{words} {noise}")
+        least = float(depth_sigma(NO_DEPTH, p.baseline, p.focal, s.sigma_px))
+        return _curves(p.baseline, p.focal, s.sigma_px, room(NO_DEPTH, 1.5), room(least, 1.8)).pane(noise)
+    plot = _curves(p.baseline, p.focal, s.sigma_px, room(depth, 1.5), room(sigma, 1.8))
+    return plot.pane(f"{quantity(depth, 'm', 2)} ± {quantity(sigma, 'm')} {noise}", (depth, sigma))
 
 
-def _curves(p: TriangulationParams, s: TriangulationSolution, depth: float, sigma: float) -> Plot:
-    """With room for a depth and its uncertainty; half and twice the baseline are ghosts."""
-    end, top = room(depth, 1.5), room(sigma, 1.8)
-    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=end, y_max=top)
+@lru_cache(maxsize=128)
+def _curves(baseline: float, focal: float, sigma: float, x_max: float, y_max: float) -> Plot:
+    """Half and twice the baseline are ghosts."""
+    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=x_max, y_max=y_max)
     for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
-        plot.curve(_curve(times * p.baseline, p.focal, s.sigma_px, end, top), words, ghost=times != 1.0)
+        end = min(x_max, math.sqrt(y_max / float(depth_sigma(1.0, times * baseline, focal, sigma))))
+        depths = np.linspace(0.0, end, 25)[1:]
+        sigmas = depth_sigma(depths, times * baseline, focal, sigma)
+        plot.curve([(0.0, 0.0), *zip(depths.tolist(), sigmas.tolist(), strict=True)], words, ghost=times != 1.0)
     return plot
-
-
-@lru_cache(maxsize=256)
-def _curve(baseline: float, focal: float, sigma: float, x_max: float, y_max: float) -> list[tuple[float, float]]:
-    """From the origin to where it leaves the plot."""
-    end = min(x_max, math.sqrt(y_max / float(depth_sigma(1.0, baseline, focal, sigma))))
-    depths = np.linspace(end / 24, end, 24)
-    sigmas = depth_sigma(depths, baseline, focal, sigma)
-    return [(0.0, 0.0), *zip(depths.tolist(), sigmas.tolist(), strict=True)]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+from geometry.arrays import Array
 from sims.kit.readout import quantity
 from sims.kit.stage import Stage
 from sims.triangulation.model import NO_POINTS, TriangulationParams, TriangulationSolution
@@ -11,7 +13,11 @@ from sims.triangulation.model import NO_POINTS, TriangulationParams, Triangulati
 SIGMAS = 3.0
 SEEN_GAP = 0.0005
 """Metres between the rays from which on it is said that they miss."""
-HERE = (0.0, 0.0, 0.0)
+
+
+def in_steps(depth: float) -> float:
+    """The depth but for a tenth: for sizes that follow it and needn't be drawn anew each time."""
+    return math.exp2(round(4.0 * math.log2(depth)) / 4.0)
 
 
 def gap_in_words(s: TriangulationSolution) -> str:
@@ -26,19 +32,18 @@ class Region:
         self.node = stage.group(path)
         self.ball = stage.ball(f"{path}/ellipsoid", 1.0, "ink", opacity=opacity)
         self.cloud = stage.cloud(f"{path}_cloud", NO_POINTS, "ink", size=dot)
-        self.shown = NO_POINTS, 0.0
+        self.shown: tuple[Array, Array | None, float] = (NO_POINTS, None, 0.0)
 
-    def draw(
-        self, p: TriangulationParams, s: TriangulationSolution, place: Sequence[float], times: float = 0.0
-    ) -> None:
-        """With the ellipsoid at a place: in the world, or `times` as large in the coordinates of a node at the result."""
-        if s.cloud is not self.shown[0] or (times != self.shown[1] and len(s.cloud)):
-            self.shown = s.cloud, times
-            self.cloud.points(times * (s.cloud - s.point) if times and s.point is not None else s.cloud)
+    def draw(self, p: TriangulationParams, s: TriangulationSolution, at: Sequence[float], times: float = 0.0) -> None:
+        """With the ellipsoid at a place; with `times`, in a node that stands for the result."""
+        origin = s.point if times and len(s.cloud) else None
+        if s.cloud is not self.shown[0] or origin is not self.shown[1] or times != self.shown[2]:
+            self.shown = s.cloud, origin, times
+            self.cloud.points(s.cloud if origin is None else times * (s.cloud - origin))
         self.node.show(p.show_ellipsoid and s.ellipsoid_axes is not None and not s.vague)
         if s.ellipsoid_axes is None or s.ellipsoid_orientation is None:
             return
         longer = SIGMAS * (times or 1.0)
         a, b, c = s.ellipsoid_axes.tolist()
-        self.node.pose(s.ellipsoid_orientation.tolist(), place)
+        self.node.pose(s.ellipsoid_orientation.tolist(), at)
         self.ball.scale((longer * a, longer * b, longer * c))

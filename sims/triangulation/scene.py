@@ -22,7 +22,7 @@ from sims.triangulation.model import (
     TriangulationSolution,
     rig,
 )
-from sims.triangulation.region import SEEN_GAP, Region, gap_in_words
+from sims.triangulation.region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.shapes import Shape
 
 LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
@@ -32,6 +32,8 @@ BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
 RADIUS = 0.06
 FAR_AWAY = (0.0, 0.0, 0.0)
+
+WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
 
 
 class TriangulationScene:
@@ -78,7 +80,7 @@ class TriangulationScene:
             self.grip.pose(position=s.target.tolist())
 
     def _gap(self, s: TriangulationSolution) -> None:
-        seen = s.by_method["midpoint"].point is not None and s.ray_gap > 0.0 and s.point is not None
+        seen = s.by_method["midpoint"].point is not None and s.ray_gap > 1e-9 and s.point is not None
         self.gap.show(seen)
         if seen and s.closest_points is not None:
             self.gap.stroke(*s.closest_points.tolist())
@@ -98,12 +100,9 @@ class TriangulationScene:
 
     def _warn(self, s: TriangulationSolution) -> None:
         self.warning.show(s.point is None or s.vague)
-        if s.status == "parallel":
-            self.warning.text("⚠ parallel rays: no finite point")
-        elif s.status == "behind":
-            self.warning.text("⚠ no point in front: the rays diverge")
-        else:
-            self.warning.text("⚠ almost parallel: depth unknown")
+        if s.point is not None and not s.vague:
+            return
+        self.warning.text(WARNINGS.get(s.status, "⚠ almost parallel: depth unknown"))
         x = 0.5 * (s.sight_left[0] + s.sight_right[0])
         self.warning.pose(position=(3.0 * x, 3.0, 1.5))
 
@@ -126,7 +125,7 @@ class Eye:
         near = cameras.corners.item(0, 2)
         self.pixel.pose(position=(x * near, y * near, near))
         self.pixel.scale(cameras.size)
-        far = FAR if s.depth is None else 1.12 * s.depth + 0.15
+        far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
         self.ray.stroke((0.0, 0.0, 0.0), (x * far, y * far, far))
         self.back.show(s.status == "behind")
         if s.status == "behind":

@@ -152,7 +152,7 @@ class Learner:
         while True:
             try:
                 answer = happened()
-                assert answer is not False
+                assert answer is not False, "it hasn't happened"
             except (AssertionError, KeyError, StopIteration, IndexError):
                 if time.monotonic() > until:
                     raise
@@ -246,16 +246,16 @@ class Learner:
 
     # ---- checking
 
-    def sees(self, **expected: Any) -> dict[str, Any]:
-        """Wait until the state is as expected and the address says it; the solution that the API gives for it."""
-
-        def settled() -> None:
-            got = {name: self.params[name] for name in expected}
-            assert got == expected
-            assert self.query() == self.sockets.state["query"]
-
-        self.until(settled)
+    def solution(self, **expected: Any) -> dict[str, Any]:
+        """What the API gives for the present state; the state must be as expected, and the address say it."""
+        got = {name: self.params[name] for name in expected}
+        assert got == expected
+        assert self.query() == self.sockets.state["query"]
         return self.solved()
+
+    def sees(self, **expected: Any) -> dict[str, Any]:
+        """As `solution`, once the state is as expected."""
+        return self.until(lambda: self.solution(**expected))
 
     def reads(self, name: str, value: npt.ArrayLike, digits: int = 3) -> bool:
         """Whether the read-outs show a number, vector or matrix under a name."""

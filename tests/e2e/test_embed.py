@@ -40,14 +40,14 @@ def in_frame(learner: Learner) -> None:
 
 def answers(learner: Learner, kind: str, more_than: int) -> Any:
     """The newest message of a kind, once there are more than a number."""
-    return learner.until(lambda: heard(learner, kind)[more_than:])[-1]
+    return learner.until(lambda: heard(learner, kind)[more_than:][-1])
 
 
 def test_a_course_page_and_a_sim_talk_to_each_other(classroom: Classroom, course: CourseSite) -> None:
     learner = classroom.enter()
     course.show(learner, "euler-angles/embed?yaw=45")
     in_frame(learner)
-    learner.until(lambda: heard(learner, "sim3:ready")[0]["slug"] == "euler-angles")
+    assert answers(learner, "sim3:ready", 0)["slug"] == "euler-angles"
     height = answers(learner, "sim3:height", 0)
     assert height["height"] > 0
     first = answers(learner, "sim3:state", 0)
@@ -90,7 +90,7 @@ def test_a_sandboxed_frame_works_too(classroom: Classroom, course: CourseSite) -
     course.show(learner, "triangulation/embed?noise=1", 'sandbox="allow-scripts"')
     in_frame(learner)
     assert answers(learner, "sim3:state", 0)["from"] == "null"
-    learner.until(lambda: heard(learner, "sim3:ready"))
+    assert answers(learner, "sim3:ready", 0)["slug"] == "triangulation"
 
     learner.press_keys("baseline", "End")
     learner.sees(baseline=2, noise=1)

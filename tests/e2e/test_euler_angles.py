@@ -23,13 +23,17 @@ def drawn(learner: Learner) -> Array:
 
 
 def agree(learner: Learner, **expected: Any) -> Array:
-    """State, address, solution, read-outs and scene say the same; the rotation."""
-    solution = learner.sees(**expected)
-    R = np.array(solution["R"])
-    np.testing.assert_allclose(R, expected_rotation(learner.params), rtol=0, atol=1e-12)
-    learner.until(lambda: np.testing.assert_allclose(drawn(learner), solution["R_progress"], rtol=0, atol=1e-6))
-    learner.until(lambda: learner.reads("R", R))
-    return R
+    """State, address, solution, read-outs and scene come to say the same; the rotation."""
+
+    def said() -> Array:
+        solution = learner.solution(**expected)
+        R = np.array(solution["R"])
+        np.testing.assert_allclose(R, expected_rotation(learner.params), rtol=0, atol=1e-12)
+        np.testing.assert_allclose(drawn(learner), solution["R_progress"], rtol=0, atol=1e-6)
+        assert learner.reads("R", R)
+        return R
+
+    return learner.until(said)
 
 
 def expected_rotation(params: dict[str, Any]) -> Array:

@@ -21,7 +21,12 @@ def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classr
     watcher.sees(yaw=90)
     turned: list[float] = []
     learner.press("Animate sequence")
-    learner.until(lambda: turned.append(learner.scene.world_pose("/turn1")[0, 0]) or learner.params["progress"] == 3)
+
+    def followed() -> bool:
+        turned.append(learner.scene.world_pose("/turn1")[0, 0])
+        return min(progress(learner)) < 1 and learner.params["progress"] == 3
+
+    learner.until(followed)
     learner.sees(yaw=90, progress=3)
     watcher.sees(yaw=90, progress=3)
     for viewer in (learner, watcher):

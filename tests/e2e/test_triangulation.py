@@ -13,21 +13,26 @@ from tests.e2e.learner import Learner, box
 from tests.e2e.picture import Picture, project
 
 Array = npt.NDArray[np.float64]
+HANDLES = """() => ["left_uv", "right_uv"].map((name) => {
+    const { x, y } = document.querySelector(`[data-handle=${name}]`).dataset;
+    return [Number(x), Number(y)];
+})"""
 METHODS = ("dlt", "midpoint", "optimal")
 
 
 def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
-    """State, address, solution, read-outs, pictures and scene say the same; the solution."""
-    solution = learner.sees(**expected)
-    learner.until(lambda: drawn(learner, solution))
-    if solution["point"] is not None:
-        assert learner.until(lambda: learner.reads("X", solution["point"]))
-    assert learner.until(lambda: learner.reads("d", solution["disparity"], 2))
-    for side in ("left", "right"):
-        handle = learner.frame.locator(f"[data-handle={side}_uv]")
-        place = [float(handle.get_attribute(f"data-{k}") or "nan") for k in "xy"]
-        assert place == learner.params[f"{side}_uv"]
-    return solution
+    """State, address, solution, read-outs, pictures and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        drawn(learner, solution)
+        assert solution["point"] is None or learner.reads("X", solution["point"])
+        assert learner.reads("d", solution["disparity"], 2)
+        places: list[list[float]] = learner.frame.evaluate(HANDLES)
+        assert places == [learner.params["left_uv"], learner.params["right_uv"]]
+        return solution
+
+    return learner.until(said)
 
 
 def drawn(learner: Learner, solution: dict[str, Any]) -> None:
