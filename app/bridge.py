@@ -306,10 +306,11 @@ class Bridge:
                 continue
             try:
                 message = channel_decoder.decode(text)
-            except (msgspec.DecodeError, UnicodeError, RecursionError):
+            except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
                 self.refusals["channel"] += 1
                 if self.bad(bucket):
                     return 1008
+                answer({"type": "error", "message": f"not understood: {error}"})
                 continue
             self._obey(session, visit, message, answer)
 

@@ -309,6 +309,8 @@ function shareLink() {
 async function share() {
   const link = new URL(shareLink(), location.href).href;
   try {
+    // Frames of other sites may not; asking all the same would leave an error in the console.
+    if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
     await navigator.clipboard.writeText(link);
     notify("Link copied. It opens this sim in exactly this state.");
   } catch {
@@ -331,7 +333,7 @@ function savePicture() {
 function dialog(title, html) {
   document.querySelector("dialog.s3-dialog")?.remove();
   const box = element("dialog", { class: "s3-dialog", "aria-label": title });
-  box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close" autofocus>Close</button>`;
+  box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close">Close</button>`;
   box.showModal();
 }
 

@@ -60,9 +60,11 @@ def test_a_course_page_and_a_sim_talk_to_each_other(classroom: Classroom, course
 
     say(learner, {"type": "sim3:set", "params": {"yaw": -50, "order": "xyz"}})
     solution = learner.sees(yaw=-50, order="xyz", pitch=20)
-    learner.until(lambda: np.testing.assert_allclose(
-        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
-    ))
+    learner.until(
+        lambda: np.testing.assert_allclose(
+            learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+        )
+    )
     count = len(heard(learner, "sim3:state"))
     say(learner, {"type": "sim3:get"})
     assert answers(learner, "sim3:state", count)["params"] == learner.params
@@ -87,6 +89,7 @@ def test_a_course_page_and_a_sim_talk_to_each_other(classroom: Classroom, course
 
 def test_a_sandboxed_frame_works_too(classroom: Classroom, course: CourseSite) -> None:
     learner = classroom.enter()
+    learner.witness.expect("The Clipboard API has been blocked", "Blocked autofocusing")  # then the link is shown
     course.show(learner, "triangulation/embed?noise=1", 'sandbox="allow-scripts"')
     in_frame(learner)
     assert answers(learner, "sim3:state", 0)["from"] == "null"

@@ -56,9 +56,11 @@ def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
     touch(learner, (x, y), (x + 10, y), (x + 25, y), (x + 40, y))
     learner.until(lambda: learner.params["roll"] > 40)
     solution = learner.sees(yaw=60, pitch=-30)
-    learner.until(lambda: np.testing.assert_allclose(
-        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
-    ))
+    learner.until(
+        lambda: np.testing.assert_allclose(
+            learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+        )
+    )
     learner.control("combobox", "frame").tap()
     learner.frame.get_by_role("option", name="Extrinsic: fixed axes").tap()
     learner.sees(frame="extrinsic")

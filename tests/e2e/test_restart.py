@@ -16,9 +16,11 @@ SMALL = {"width": 640, "height": 480}
 def came_back(learner: Learner, connections: int, **state: object) -> None:
     learner.until(lambda: learner.sockets.connected > connections)
     solution = learner.sees(**state)
-    learner.until(lambda: np.testing.assert_allclose(
-        learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
-    ))
+    learner.until(
+        lambda: np.testing.assert_allclose(
+            learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
+        )
+    )
 
 
 def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: Server) -> None:

@@ -102,7 +102,9 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     solution = agree(learner)
     after = np.array(solution["point"])
     forward = np.subtract(camera["look_at"], camera["position"])
-    assert abs((after - before) @ forward / np.linalg.norm(forward)) < 0.02, "it moves in the plane that faces the viewer"
+    assert abs((after - before) @ forward / np.linalg.norm(forward)) < 0.02, (
+        "it moves in the plane that faces the viewer"
+    )
     for side, sign in (("left", -1), ("right", 1)):
         np.testing.assert_allclose(learner.params[f"{side}_uv"], pixel_of(after, learner.params, sign), atol=1e-6)
     np.testing.assert_allclose(learner.sockets.camera["position"], camera["position"], atol=1e-9)
@@ -141,9 +143,9 @@ def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
     scale = box(frame.locator("svg[data-pane=left]"))["width"] / 640
     core = box(frame.locator("[data-handle=left_uv] .s3-core"))
     pull(learner, (core["x"] + core["width"] / 2, core["y"] + core["height"] / 2), 20, -6)
-    learner.until(lambda: np.testing.assert_allclose(
-        learner.params["left_uv"], [410 + 20 / scale, 210 - 6 / scale], atol=1.5
-    ))
+    learner.until(
+        lambda: np.testing.assert_allclose(learner.params["left_uv"], [410 + 20 / scale, 210 - 6 / scale], atol=1.5)
+    )
     solution = agree(learner, right_uv=[320, 210])
     assert solution["ray_gap"] > 0.001, "rays of pixels in different rows miss each other"
     assert solution["by_method"]["optimal"]["reprojection_rms"] <= solution["by_method"]["dlt"]["reprojection_rms"]

@@ -245,3 +245,30 @@ def test_numeric_fields_are_those_with_bounds() -> None:
 def test_long_text_is_cut_where_it_is_shown() -> None:
     assert kit.clipped("x" * 80) == "x" * 80
     assert kit.clipped("x" * 81) == "x" * 79 + "…"
+
+
+# ---- vectors whose entries have bounds of their own
+
+
+class Pixel(Params):
+    """A place in a picture."""
+
+    uv: tuple[float, float] = vector(
+        (320.0, 240.0), (0.0, 0.0), (639.0, 479.0), title="Pixel", description="Column and row", step=1
+    )
+
+
+def test_entries_of_a_vector_are_kept_within_their_own_bounds() -> None:
+    assert Pixel().moved({"uv": (1000, 1000)}).uv == (639, 479)
+    assert Pixel().moved({"uv": (-1, 500)}).uv == (0, 479)
+    assert Pixel().changed({"uv": (639, 479)}).uv == (639, 479)
+    with pytest.raises(ValidationError, match="from 0 to 639, then from 0 to 479"):
+        Pixel().changed({"uv": (0, 480)})
+
+
+def test_entries_of_a_vector_say_what_they_allow() -> None:
+    with pytest.raises(BadParams) as caught:
+        Pixel.from_query([("uv", "x,1")])
+    ((_, _, allowed),) = caught.value.complaints
+    assert allowed == "2 numbers from 0 to 639, then from 0 to 479, separated by commas"
+    assert Pixel().bounds("uv") == (0, 639)

@@ -1,0 +1,77 @@
+"""Plots: axes that people can read, and curves where the numbers are."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sims.kit.palette import LIGHT
+from sims.kit.pane import render
+from sims.kit.plot import END, FLOOR, LEFT, TOP, Plot, room, step, ticks
+from tests.sims.markup import bad_attributes, mistakes, words, xml
+
+
+def plot() -> Plot:
+    made = Plot("sigma", "Depth", x="depth (m)", y="σ (m)", x_max=10.0, y_max=0.2)
+    made.curve([(0.0, 0.0), (5.0, 0.1), (10.0, 0.4)], "b")
+    made.curve([(0.0, 0.0), (10.0, 0.1)], "2 b", ghost=True)
+    return made
+
+
+@given(st.floats(1e-6, 1e9), st.integers(2, 10))
+def test_ticks_are_round_few_and_reach_almost_to_the_end(greatest: float, most: int) -> None:
+    gap = step(greatest, most)
+    digits = f"{gap:e}".split("e")[0].rstrip("0").rstrip(".")
+    assert digits in ("1", "2", "5")
+    values = [value for value, _ in ticks(greatest, most)]
+    assert values[0] == 0.0
+    assert len(values) <= most + 1
+    assert greatest - gap < values[-1] * (1 + 1e-6)
+    assert values[-1] <= greatest * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("greatest", "expected"),
+    [
+        (10.0, ["0", "2", "4", "6", "8", "10"]),
+        (0.2, ["0.00", "0.05", "0.10", "0.15", "0.20"]),
+        (2.0, ["0.0", "0.5", "1.0", "1.5", "2.0"]),
+    ],
+)
+def test_ticks_have_as_many_decimals_as_they_need(greatest: float, expected: list[str]) -> None:
+    assert [text for _, text in ticks(greatest)] == expected
+
+
+@given(st.floats(1e-6, 1e6), st.floats(1.1, 3))
+def test_axes_leave_room(value: float, spare: float) -> None:
+    assert value * spare <= room(value, spare) * (1 + 1e-9) <= 10.0 * value * spare
+
+
+def test_values_are_where_the_axes_say() -> None:
+    made = plot()
+    assert made.at(0.0, 0.0) == (LEFT, FLOOR)
+    assert made.at(10.0, 0.2) == (END, TOP)
+    svg = made.pane("4 m", (4.0, 0.05)).svg
+    u, v = made.at(4.0, 0.05)
+    assert f'cx="{u:.1f}" cy="{v:.1f}"' in svg
+    assert re.search(rf'M{LEFT}.0 {FLOOR}.0L[^"]+" class="s3-curve"', svg)
+
+
+def test_a_plot_is_well_formed_named_and_alone_in_its_row() -> None:
+    pane = plot().pane("4.00 m", (4.0, 0.05))
+    html = render([pane], LIGHT.style())
+    assert not mistakes(html)
+    assert not bad_attributes(html)
+    svg = next(e for e in xml(html).iter() if e.tag.endswith("svg"))
+    assert svg.get("aria-label") == "Depth: 4.00 m"
+    assert svg.get("role") == "img"
+    assert "s3-wide" in html
+    assert {"depth (m)", "σ (m)", "b", "2 b"} <= {(e.text or "") for e in svg.iter() if e.tag.endswith("text")}
+    assert words(html).startswith("Depth 4.00 m")
+
+
+def test_without_a_point_only_the_curves_are_there() -> None:
+    assert "<circle" not in plot().pane().svg

@@ -1,0 +1,427 @@
+"""triangulation: its numbers against OpenCV and closed forms, its noise, its states without a point, its hands."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from typing import Any
+from urllib.parse import parse_qsl
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from geometry.camera import parallel_rig
+from geometry.triangulation import covariance, monte_carlo
+from sims.kit import readout
+from sims.kit.palette import LIGHT
+from sims.kit.sim import jsonable
+from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, model, solve
+from sims.triangulation.closeup import chord
+from sims.triangulation.pictures import magnification, panes
+from tests.server import Rig
+from tests.sims.markup import words, xml
+
+Array = npt.NDArray[np.float64]
+START = TriangulationParams()
+pixels = st.tuples(st.floats(0, 639), st.floats(0, 479))
+states = st.builds(
+    TriangulationParams,
+    baseline=st.floats(0.05, 2),
+    focal=st.floats(200, 1500),
+    left_uv=pixels,
+    right_uv=pixels,
+    noise=st.sampled_from([0.0, 0.5, 5.0]),
+    seed=st.integers(0, 9999),
+    method=st.sampled_from(["dlt", "midpoint", "optimal"]),
+)
+
+
+def projections(p: TriangulationParams, point: npt.ArrayLike) -> tuple[Array, Array]:
+    """Pixels of a world point by the definition of the rig: centres (∓b/2, 0, 1), looking along Y."""
+    x, y, z = np.asarray(point, dtype=float)
+    both = [
+        np.array([320 + p.focal * (x - c) / y, 240 - p.focal * (z - 1) / y]) for c in (-p.baseline / 2, p.baseline / 2)
+    ]
+    return both[0], both[1]
+
+
+def matrices(p: TriangulationParams) -> tuple[Array, Array]:
+    """K [R | t] of both cameras, written out."""
+    K = np.array([[p.focal, 0, 320], [0, p.focal, 240], [0, 0, 1]])
+    R = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    centres = [np.array([x, 0, 1.0]) for x in (-p.baseline / 2, p.baseline / 2)]
+    left, right = (K @ np.column_stack([R, -R @ c]) for c in centres)
+    return left, right
+
+
+def found(p: TriangulationParams, method: str) -> Array:
+    point = solve(p).by_method[method].point  # type: ignore[index]
+    assert point is not None
+    return point
+
+
+PAIRS = [
+    {},
+    {"right_uv": (320, 222)},
+    {"baseline": 1.7, "focal": 350, "left_uv": (500, 100), "right_uv": (130, 90)},
+    {"baseline": 0.1, "left_uv": (330, 240), "right_uv": (310, 241)},
+    {"noise": 2.0, "seed": 11},
+]
+each_pair = pytest.mark.parametrize("changes", PAIRS)
+
+
+# ---- numbers
+
+
+def test_defaults_are_the_projections_of_the_point_that_the_contract_names() -> None:
+    left, right = projections(START, (0.3, 4.0, 1.2))
+    assert START.left_uv == tuple(left)
+    assert START.right_uv == tuple(right)
+    solution = solve(START)
+    assert solution.point is not None
+    np.testing.assert_allclose(solution.point, (0.3, 4.0, 1.2), rtol=0, atol=1e-12)
+    assert solution.ray_gap == 0.0
+    assert solution.disparity == 90.0
+    assert solution.depth_from_disparity == 4.0
+    assert solution.in_front
+    a, b = np.array([0.6, 4, 0.2]), np.array([0.0, 4, 0.2])
+    assert solution.parallax_angle == pytest.approx(math.degrees(math.acos(a @ b / math.sqrt(a @ a * (b @ b)))))
+
+
+@each_pair
+def test_linear_point_is_that_of_opencv(changes: dict[str, Any]) -> None:
+    p = START.changed(changes)
+    left, right = (np.array(pixel).reshape(2, 1) for pixel in model.measured(p))
+    # In normalised coordinates, where its equations are well scaled.
+    K_inverse = np.linalg.inv(np.array([[p.focal, 0, 320], [0, p.focal, 240], [0, 0, 1]]))
+    normal = [K_inverse[:2, :2] @ pixel + K_inverse[:2, 2:] for pixel in (left, right)]
+    X = cv2.triangulatePoints(*(K_inverse @ P for P in matrices(p)), *normal)
+    np.testing.assert_allclose(found(p, "dlt"), (X[:3] / X[3]).ravel(), rtol=1e-9, atol=1e-9)
+
+
+@each_pair
+def test_optimal_point_projects_to_opencvs_corrected_pixels(changes: dict[str, Any]) -> None:
+    p = START.changed(changes)
+    left, right = model.measured(p)
+    F = model.rig(p.baseline, p.focal).F
+    corrected = cv2.correctMatches(F, np.array([[left]]), np.array([[right]]))
+    for ours, theirs in zip(projections(p, found(p, "optimal")), corrected, strict=True):
+        np.testing.assert_allclose(ours, np.ravel(theirs), rtol=0, atol=1e-6)
+
+
+@each_pair
+def test_mid_point_is_half_way_along_the_common_perpendicular(changes: dict[str, Any]) -> None:
+    p = START.changed(changes)
+    solution = solve(p)
+    assert solution.closest_points is not None
+    left, right = solution.closest_points
+    rays = [np.array([(u - 320) / p.focal, 1.0, -(v - 240) / p.focal]) for u, v in model.measured(p)]
+    for ray in rays:
+        assert abs((right - left) @ ray) < 1e-9
+    assert np.linalg.norm(right - left) == pytest.approx(solution.ray_gap, abs=1e-12)
+    np.testing.assert_allclose(found(p, "midpoint"), (left + right) / 2, rtol=0, atol=1e-12)
+
+
+@given(states)
+def test_errors_are_distances_to_the_projections_and_the_optimal_ones_are_least(p: TriangulationParams) -> None:
+    solution = solve(p)
+    squares = {}
+    for method, result in solution.by_method.items():
+        if result.point is None or result.point[1] < 0.01:
+            continue
+        left, right = projections(p, result.point)
+        errors = math.dist(left, solution.measured_left), math.dist(right, solution.measured_right)
+        assert (result.reprojection_left, result.reprojection_right) == pytest.approx(errors, abs=1e-6)
+        squares[method] = 2.0 * (result.reprojection_rms or 0.0) ** 2
+        assert squares[method] == pytest.approx(errors[0] ** 2 + errors[1] ** 2, abs=1e-6)
+    for other in ("dlt", "midpoint"):
+        if other in squares and "optimal" in squares:
+            assert squares["optimal"] <= squares[other] + 1e-7
+
+
+@given(states)
+def test_every_state_has_an_answer_without_nan(p: TriangulationParams) -> None:
+    solution = solve(p)
+    assert (solution.point is None) == (solution.status != "found")
+    assert solution.point is None or solution.in_front
+    values = jsonable(solution)
+    assert values["point"] is None or all(v is not None for v in values["point"])
+    for line, pixel in ((solution.line_left, solution.measured_left), (solution.line_right, solution.measured_right)):
+        assert np.linalg.norm(line[:2]) == pytest.approx(1.0)
+        assert abs(line[0]) < 1e-9, "a parallel rig has horizontal epipolar lines"
+        assert pixel is not None
+
+
+def test_epipolar_line_goes_through_the_row_of_the_other_point() -> None:
+    solution = solve(START.changed({"left_uv": (400, 100), "right_uv": (300, 180)}))
+    assert abs(solution.line_left @ (17.0, 180.0, 1.0)) < 1e-9
+    assert abs(solution.line_right @ (17.0, 100.0, 1.0)) < 1e-9
+
+
+# ---- uncertainty
+
+
+def test_covariance_is_the_propagated_one_for_one_pixel_or_the_noise() -> None:
+    for noise, sigma in ((0.0, 1.0), (0.5, 0.5), (3.0, 3.0)):
+        p = START.changed({"noise": noise})
+        solution = solve(p)
+        assert solution.point is not None
+        assert solution.covariance is not None
+        assert solution.ellipsoid_axes is not None
+        assert solution.sigma_px == sigma
+        np.testing.assert_allclose(
+            solution.covariance, covariance(parallel_rig(p.baseline, p.focal), solution.point, sigma), rtol=1e-12
+        )
+        np.testing.assert_allclose(
+            np.sort(solution.ellipsoid_axes**2), np.linalg.eigvalsh(solution.covariance), rtol=1e-9
+        )
+        expected = math.sqrt(2.0) * sigma * solution.point[1] ** 2 / (p.focal * p.baseline)
+        assert solution.depth_sigma == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("depth", [1.5, 4.0, 12.0])
+def test_half_the_baseline_doubles_the_depth_sigma(depth: float) -> None:
+    wide, narrow = (at_depth(START.changed({"baseline": b}), depth) for b in (0.6, 0.3))
+    assert narrow.depth_sigma is not None
+    assert wide.depth_sigma is not None
+    assert narrow.depth_sigma / wide.depth_sigma == pytest.approx(2.0, rel=0.02)
+    assert narrow.ellipsoid_axes is not None
+    assert wide.ellipsoid_axes is not None
+    assert narrow.ellipsoid_axes[0] / wide.ellipsoid_axes[0] == pytest.approx(2.0, rel=0.02)
+
+
+def at_depth(p: TriangulationParams, depth: float) -> TriangulationSolution:
+    return solve(p.changed(model.hold_point(p, (0.05, depth, 1.1))))
+
+
+@pytest.mark.parametrize("changes", [{}, {"baseline": 0.3}, {"noise": 2.0}, {"left_uv": (360, 240)}])
+def test_plot_marks_the_point_on_its_curve_and_its_ghosts_are_half_and_twice_the_baseline(
+    changes: dict[str, Any],
+) -> None:
+    p = START.changed(changes)
+    svg = panes(p, solve(p), LIGHT)[2].svg
+    mark = re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)"', svg)
+    assert mark is not None
+    u, v = float(mark[1]), float(mark[2])
+    above: dict[str, list[float]] = {"curve": [], "ghost": []}
+    for path, kind in re.findall(r'<path d="M([\d. L]+)" class="s3-(curve|ghost)"/>', svg):
+        points = np.array([[float(n) for n in pair.split()] for pair in path.split("L")])
+        above[kind].append(float(126.0 - np.interp(u, points[:, 0], points[:, 1])))
+    height = 126.0 - v
+    assert above["curve"][0] == pytest.approx(height, abs=1.0)
+    half, twice = sorted(above["ghost"], reverse=True)
+    assert twice == pytest.approx(height / 2.0, abs=1.0)
+    assert half == pytest.approx(2.0 * height, abs=1.5) or half > 95.0
+
+
+def test_drawn_samples_agree_with_the_propagated_covariance() -> None:
+    p = START.changed({"noise": 0.5})
+    solution = solve(p)
+    assert solution.covariance is not None
+    cameras = parallel_rig(p.baseline, p.focal)
+    many = monte_carlo(*cameras, *model.measured(p), p.noise, 20_000, seed=5)
+    sampled = np.cov(many.T)
+    scale = np.sqrt(np.outer(np.diag(solution.covariance), np.diag(solution.covariance)))
+    assert np.abs((sampled - solution.covariance) / scale).max() < 0.1
+    assert len(solution.cloud) == 300
+    ratio = np.std(solution.cloud, axis=0, ddof=1) / np.sqrt(np.diag(solution.covariance))
+    np.testing.assert_allclose(ratio, 1.0, atol=0.15)
+    middle = np.abs(solution.cloud.mean(axis=0) - solution.point) / np.sqrt(np.diag(solution.covariance) / 300)
+    assert (middle < 4.0).all()
+
+
+# ---- noise
+
+
+def test_noise_is_on_both_points_and_the_same_for_the_same_seed() -> None:
+    p = START.changed({"noise": 1.5, "seed": 42})
+    again = TriangulationParams.from_query(parse_qsl(p.query()))
+    assert jsonable(solve(p)) == jsonable(solve(again))
+    shifts = np.subtract([solve(p).measured_left, solve(p).measured_right], [p.left_uv, p.right_uv])
+    assert (np.abs(shifts) > 1e-6).all()
+    other = solve(p.changed({"seed": 43}))
+    assert not np.allclose(other.measured_left, solve(p).measured_left)
+
+
+def test_noise_grows_with_its_deviation_and_zero_is_off() -> None:
+    assert model.measured(START) == (START.left_uv, START.right_uv)
+    one, two = (
+        np.subtract(model.measured(START.changed({"noise": s})), [START.left_uv, START.right_uv]) for s in (1, 2)
+    )
+    np.testing.assert_allclose(two, 2.0 * one, rtol=1e-9)
+    assert len(solve(START).cloud) == 0
+    assert solve(START).true_point is None
+
+
+def test_noise_of_many_seeds_is_gaussian_with_the_deviation_named() -> None:
+    shifts = np.array(
+        [
+            np.subtract(model.measured(START.changed({"noise": 2.0, "seed": k})), [START.left_uv, START.right_uv])
+            for k in range(500)
+        ]
+    )
+    assert shifts.std() == pytest.approx(2.0, rel=0.05)
+    assert abs(shifts.mean()) < 0.2
+    left_u, left_v, right_u, right_v = shifts.reshape(500, 4).T
+    for a, b in itertools.combinations((left_u, left_v, right_u, right_v), 2):
+        assert abs(np.corrcoef(a, b)[0, 1]) < 0.2
+
+
+def test_true_point_is_where_the_pixels_came_from() -> None:
+    solution = solve(START.changed({"noise": 1.0}))
+    assert solution.true_point is not None
+    np.testing.assert_allclose(solution.true_point, (0.3, 4.0, 1.2), atol=1e-9)
+    missing = solve(START.changed({"noise": 1.0, "right_uv": (320, 230)}))
+    assert missing.true_point is None, "rays that miss came from no point"
+    assert missing.target is not None
+
+
+# ---- states without a point
+
+NOWHERE = {
+    "parallel rays": "parallel",
+    "diverging rays": "behind",
+    "behind, rays miss": "behind",
+    "no disparity, rays miss, mid-point": "behind",
+}
+
+
+@pytest.mark.parametrize(("name", "status"), NOWHERE.items())
+def test_where_there_is_no_point_that_is_said_and_nothing_is_made_up(name: str, status: str) -> None:
+    p = START.changed(SIM.states[name])
+    solution = solve(p)
+    assert solution.status == status
+    for nothing in ("point", "covariance", "ellipsoid_axes", "depth_sigma", "target", "depth_from_disparity"):
+        assert getattr(solution, nothing) is None
+    result = solution.by_method[p.method]
+    assert result.reprojection_left is result.reprojection_right is result.reprojection_rms is None
+    html = readout.render(SIM.readouts(p, solution))
+    assert "s3-warn" in html
+    assert "⚠" in words(html)
+    assert model.held_point(p, solution) is None
+
+
+def test_parallel_rays_have_no_disparity_and_no_parallax_but_a_distance() -> None:
+    solution = solve(START.changed(SIM.states["parallel rays"]))
+    assert solution.disparity == 0.0
+    assert solution.parallax_angle == 0.0
+    assert solution.closest_points is None
+    along = np.array([0.15, 1.0, 0.05])
+    assert solution.ray_gap == pytest.approx(
+        float(np.linalg.norm(np.cross([0.6, 0, 0], along)) / np.linalg.norm(along))
+    )
+
+
+def test_diverging_rays_name_where_their_lines_meet() -> None:
+    p = START.changed(SIM.states["diverging rays"])
+    solution = solve(p)
+    assert not solution.in_front
+    assert solution.closest_points is not None
+    np.testing.assert_allclose(solution.closest_points[:, 1], -9.0)
+    assert "9.00" in words(readout.render(SIM.readouts(p, solution)))
+
+
+def test_an_almost_parallel_pair_is_called_so() -> None:
+    for name in ("parallel to rounding", "no disparity, rays miss"):
+        solution = solve(START.changed(SIM.states[name]))
+        assert solution.status == "found"
+        assert solution.vague
+    assert solve(START.changed({"right_uv": (408.7, 210)})).vague, "σ_Z / Z = √2 σ / d"
+    assert not solve(START.changed({"right_uv": (408.5, 210)})).vague
+
+
+# ---- hands and buttons
+
+
+@given(st.floats(0.05, 2), st.floats(200, 1500), st.floats(-60, 60), st.floats(-5, 100), st.floats(-50, 50))
+def test_holding_a_point_sets_both_pixels_to_its_projections_or_the_nearest_seen(
+    baseline: float, focal: float, x: float, y: float, z: float
+) -> None:
+    p = START.changed({"baseline": baseline, "focal": focal})
+    held = p.changed(model.hold_point(p, (x, y, z)))
+    assert held.left_uv[1] == held.right_uv[1], "both pixels come from one point"
+    assert held.left_uv[0] > held.right_uv[0], "which is in front of the cameras"
+    if y <= 0.01:
+        return
+    exact = projections(p, (x, y, z))
+    if all(0 <= u <= 639 and 0 <= v <= 479 for u, v in exact):
+        np.testing.assert_allclose([held.left_uv, held.right_uv], exact, rtol=0, atol=1e-6)
+        target = solve(held).target
+        assert target is not None
+        np.testing.assert_allclose(target, (x, y, z), rtol=1e-6, atol=1e-6)
+    elif exact[0][0] - exact[1][0] <= 639:
+        np.testing.assert_allclose(held.left_uv[0] - held.right_uv[0], exact[0][0] - exact[1][0], rtol=0, atol=1e-6)
+
+
+def test_handles_of_the_pictures_set_their_pixel() -> None:
+    assert SIM.handles["left_uv"](START, (12.5, 30.25)) == {"left_uv": (12.5, 30.25)}
+    assert SIM.handles["right_uv"](START, (12.5, 30.25)) == {"right_uv": (12.5, 30.25)}
+    moved = START.moved(SIM.handles["right_uv"](START, (-4.0, 600.0)))
+    assert moved.right_uv == (0.0, 479.0)
+
+
+def test_buttons_lead_to_the_next_sample_and_switch_noise() -> None:
+    assert START.changed(model.new_sample(START)) == START.changed({"seed": 1, "noise": 1.0})
+    noisy = START.changed({"noise": 0.3, "seed": 9999})
+    assert noisy.changed(model.new_sample(noisy)) == noisy.changed({"seed": 0})
+    assert noisy.changed(model.switch_noise(noisy)).noise == 0.0
+    assert START.changed(model.switch_noise(START)).noise == 1.0
+
+
+def test_the_point_can_be_typed_and_hides_where_there_is_none() -> None:
+    with Rig(SIM) as rig:
+        control = rig.browser.control("3D point")
+        assert control.value == pytest.approx((0.3, 4.0, 1.2))
+        rig.browser.move("3D point", [0.1, 3.0, 1.3])
+        rig.settle()
+        left, right = projections(START, (0.1, 3.0, 1.3))
+        state = rig.session.params
+        assert isinstance(state, TriangulationParams)
+        assert state.left_uv == pytest.approx(tuple(left))
+        assert state.right_uv == pytest.approx(tuple(right))
+        rig.show(START.changed(SIM.states["parallel rays"]))
+        assert not rig.browser.control("3D point").props["visible"]
+        rig.show(START)
+        assert rig.browser.control("3D point").props["visible"]
+
+
+# ---- pictures and close-up
+
+
+def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() -> None:
+    p = START.changed({"right_uv": (320, 222), "method": "optimal"})
+    solution = solve(p)
+    left, right, _ = panes(p, solution, LIGHT)
+    for pane, own, other, pixel in ((left, "left", "right", (410.0, 210.0)), (right, "right", "left", (320.0, 222.0))):
+        root = xml(pane.svg)
+        handle = next(e for e in root.iter() if e.get("data-handle"))
+        assert handle.get("data-handle") == f"{own}_uv"
+        assert (float(handle.get("data-x") or 0), float(handle.get("data-y") or 0)) == pixel
+        line, arrow = (e for e in root.iter() if e.tag.endswith("line"))
+        assert line.get("stroke") == f"var(--{other})"
+        row = 222.0 if own == "left" else 210.0
+        assert float(line.get("y1") or 0) == float(line.get("y2") or 0) == pytest.approx(row)
+        times = magnification(6.0, 6.0)
+        length = float(arrow.get("y2") or 0) - float(arrow.get("y1") or 0)
+        assert abs(length) == pytest.approx(6.0 * times, abs=0.02)
+        assert pane.note == f"error 6.00\u2009px, arrow ×{times}"
+
+
+@pytest.mark.parametrize(("left", "right", "times"), [(None, None, 1), (0.0, 0.0, 1), (50.0, 3.0, 1), (0.0, 6.0, 10)])
+def test_arrows_are_magnified_until_they_can_be_seen(left: float | None, right: float | None, times: int) -> None:
+    assert magnification(left, right) == times
+
+
+def test_what_the_glass_holds_of_a_line() -> None:
+    start, end = chord([0.1, 0.0, 0.2], (0.15, 1.0, 0.05), 0.75)
+    for place in (start, end):
+        assert math.hypot(*place) == pytest.approx(0.75)
+        offset = np.subtract(place, [0.1, 0.0, 0.2])
+        np.testing.assert_allclose(np.cross(offset, (0.15, 1.0, 0.05)), 0.0, atol=1e-12)
+    missed, same = chord([2.0, 0.0, 0.0], (0.0, 1.0, 0.0), 0.75)
+    assert missed == same
