@@ -41,7 +41,7 @@ def _hints(props: type) -> dict[str, Any]:
     return get_type_hints(props)
 
 
-AssignablePropsBase._prop_hints = property(lambda self: _hints(type(self._impl.props)))  # type: ignore
+AssignablePropsBase._prop_hints = property(lambda self: _hints(type(self._impl.props)))  # type: ignore[arg-type, assignment, method-assign]
 
 
 class Wire:

@@ -17,7 +17,7 @@ from sims.kit.readout import quantity
 from sims.triangulation.model import HEIGHT, WIDTH, Pixel, TriangulationParams, TriangulationSolution
 
 MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-LONG_ENOUGH = 40.0
+LONG_ENOUGH = 75.0
 """Pixels that the arrow of an error should be long."""
 SEEN_ERROR = 5e-4
 NO_DEPTH = 4.0

@@ -95,8 +95,9 @@ class TriangulationScene:
         if not closeup:
             self.gap_label.pose(position=(x, y, z + 0.45))
             self.gap_label.text(gap_in_words(s))
-        unsure = f" ± {figure(s.depth_sigma, 2)}" if s.depth_sigma is not None and not s.vague else ""
-        self.words.text(f"{NAMES[p.method]}: depth {figure(y, 2)}{unsure}{THIN}m")
+        digits = 2 if s.depth_sigma is None or s.depth_sigma >= 0.005 else 4
+        unsure = f" ± {figure(s.depth_sigma, digits)}" if s.depth_sigma is not None and not s.vague else ""
+        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m")
 
     def _warn(self, s: TriangulationSolution) -> None:
         self.warning.show(s.point is None or s.vague)

@@ -27,7 +27,7 @@ from playwright.sync_api import (
 )  # fmt: skip
 
 from sims import by_slug
-from sims.kit.params import Params
+from sims.kit.params import Params, extra
 from sims.kit.readout import figure
 from sims.kit.viewer import worded
 from tests.frames import Message, SceneModel, decode_message
@@ -236,7 +236,7 @@ class Learner:
         """Open a dropdown and choose what is shown for a word."""
         sim = by_slug(self.slug)
         assert sim is not None
-        shown = sim.params.model_fields[name].json_schema_extra["labels"][word]  # type: ignore[index,call-overload]
+        shown = extra(sim.params.model_fields[name])["labels"][word]
         self.control("combobox", name).click()
         self.frame.get_by_role("option", name=shown, exact=True).click()
 
@@ -276,4 +276,4 @@ class Learner:
 def box(locator: Locator) -> dict[str, float]:
     found = locator.bounding_box()
     assert found is not None, f"{locator} isn't on the page"
-    return {**found}
+    return {"x": found["x"], "y": found["y"], "width": found["width"], "height": found["height"]}

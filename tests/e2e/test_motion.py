@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 
-SMALL = {"width": 640, "height": 480}
+SMALL: ViewportSize = {"width": 640, "height": 480}
 
 
 def progress(learner: Learner, since: int = 0) -> list[float]:

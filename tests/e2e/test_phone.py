@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 from tests.e2e.picture import Picture
 
-PHONE = {"width": 390, "height": 780}
+PHONE: ViewportSize = {"width": 390, "height": 780}
 TOUCH = {"has_touch": True, "is_mobile": True, "device_scale_factor": 1}
 
 

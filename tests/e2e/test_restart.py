@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite
@@ -10,7 +11,7 @@ from tests.e2e.learner import Learner
 from tests.e2e.test_rooms import watch_only
 from tests.server import Server
 
-SMALL = {"width": 640, "height": 480}
+SMALL: ViewportSize = {"width": 640, "height": 480}
 
 
 def came_back(learner: Learner, connections: int, **state: object) -> None:

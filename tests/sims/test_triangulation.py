@@ -412,7 +412,7 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         assert pane.note == f"error 6.00\u2009px, arrow ×{times}"
 
 
-@pytest.mark.parametrize(("left", "right", "times"), [(None, None, 1), (0.0, 0.0, 1), (50.0, 3.0, 1), (0.0, 6.0, 10)])
+@pytest.mark.parametrize(("left", "right", "times"), [(None, None, 1), (0.0, 0.0, 1), (80.0, 3.0, 1), (0.0, 6.0, 20)])
 def test_arrows_are_magnified_until_they_can_be_seen(left: float | None, right: float | None, times: int) -> None:
     assert magnification(left, right) == times
 
