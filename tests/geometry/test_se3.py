@@ -84,7 +84,7 @@ def test_homogeneous_points_are_the_same_at_any_scale(h: Array, scale: float) ->
     h[3] = math.copysign(max(abs(h[3]), 0.1), h[3])
     point, finite = se3.from_homogeneous(h)
     assert finite
-    np.testing.assert_allclose(se3.from_homogeneous(-scale * h)[0], point, rtol=1e-14, atol=0)
+    np.testing.assert_allclose(se3.from_homogeneous(-scale * h)[0], point, rtol=1e-14, atol=1e-300)
     np.testing.assert_allclose(se3.to_homogeneous(point) * h[3], h, rtol=0, atol=TOLERANCE)
 
 
