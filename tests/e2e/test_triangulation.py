@@ -137,6 +137,32 @@ def shown(learner: Learner) -> None:
     learner.until(look)
 
 
+def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
+    learner = classroom.open("triangulation/embed")
+    frame = learner.frame
+    scale = box(frame.locator("svg[data-pane=left]"))["width"] / 640
+    core = box(frame.locator("[data-handle=left_uv] .s3-core"))
+    pull(learner, (core["x"] + core["width"] / 2, core["y"] + core["height"] / 2), 20, -6)
+    learner.until(
+        lambda: np.testing.assert_allclose(learner.params["left_uv"], [410 + 20 / scale, 210 - 6 / scale], atol=1.5)
+    )
+    solution = agree(learner, right_uv=[320, 210])
+    assert solution["ray_gap"] > 0.001, "rays of pixels in different rows miss each other"
+    assert solution["by_method"]["optimal"]["reprojection_rms"] <= solution["by_method"]["dlt"]["reprojection_rms"]
+    cells = frame.locator(".s3-table tr").nth(1).locator("td").all_text_contents()
+    assert cells[0] == f"{solution['by_method']['dlt']['reprojection_left']:.3f}"
+
+    handle = frame.locator("[data-handle=right_uv]")
+    handle.focus()
+    for key, place in (("ArrowRight", [321, 210]), ("Shift+ArrowUp", [321, 200]), ("Alt+ArrowLeft", [320.9, 200])):
+        learner.page.keyboard.press(key)
+        agree(learner, right_uv=place)
+        focused = frame.evaluate("document.activeElement.dataset.handle")
+        assert focused == "right_uv", "the focus stays on the point when the picture is drawn anew"
+    learner.page.keyboard.press("Shift+ArrowDown")
+    agree(learner, right_uv=[320.9, 210])
+
+
 def test_each_control_of_triangulation_answers(classroom: Classroom) -> None:
     learner = classroom.open("triangulation/embed")
     learner.press_keys("baseline", "ArrowRight")
