@@ -118,9 +118,14 @@ class Link:
     visit: Visit
     viewer: Viewer | None = None
 
-    def takes(self, message: GuiUpdateMessage) -> bool:
-        """Whether the value fits the control, if the page has it."""
-        return self.viewer is None or takes(self.viewer.client, message.uuid, message.updates.value)
+    def take(self, message: GuiUpdateMessage) -> bool | None:
+        """Give a value to its control: False if it doesn't fit, None if that is for viser to do."""
+        if self.viewer is None:
+            return False
+        taken = self.viewer.input(message.uuid, message.updates.value)
+        if taken is None and not takes(self.viewer.client, message.uuid, message.updates.value):
+            return False
+        return taken
 
 
 class Bridge:
@@ -191,10 +196,11 @@ class Bridge:
             if link.visit.watching and message.commands:
                 self.refusals["watching"] += 1
                 continue
-            if isinstance(message, GuiUpdateMessage) and not link.takes(message):
+            taken = link.take(message) if isinstance(message, GuiUpdateMessage) else None
+            if taken is None:
+                wire.feed(data, message.value_of)
+            elif not taken:
                 self.refusals["value"] += 1
-                continue
-            wire.feed(data, message.value_of)
         return 1000
 
     @staticmethod

@@ -6,6 +6,7 @@ the live controls, the link, the JSON schema, validation and the tests.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Self, cast, get_args
@@ -26,8 +27,12 @@ class Params(BaseModel):
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True, validate_by_name=True
     )
 
+    def form(self) -> tuple[Any, ...]:
+        """All that labels, bounds and marks may depend on: everything but the plain numbers."""
+        return tuple([value for value in self.__dict__.values() if type(value) is not float])
+
     def bounds(self, name: str) -> tuple[float, float]:
-        """Least and greatest value of a numeric field in this state; override where they depend on it."""
+        """Least and greatest value of a numeric field in this state; override where they depend on its `form`."""
         return _declared_bounds(type(self), name)
 
     def label(self, name: str) -> str:
@@ -44,9 +49,18 @@ class Params(BaseModel):
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         """The state after a live control moved: numbers are kept within their bounds."""
+        if len(changes) == 1 and (fast := self._number_moved(*next(iter(changes.items())))):
+            return fast
         state = self.model_copy(update=dict(changes))
         clamped = {name: state._clamped(name) for name in numeric_fields(type(self))}
         return self.changed({**changes, **clamped})
+
+    def _number_moved(self, name: str, value: Any) -> Self | None:
+        """The same for one plain number, which within its bounds is always valid."""
+        if type(value) is not float or type(self.__dict__.get(name)) is not float or not math.isfinite(value):
+            return None
+        low, high = self.bounds(name)
+        return self.model_copy(update={name: min(max(value, low), high)})
 
     def _clamped(self, name: str) -> Any:
         value = getattr(self, name)

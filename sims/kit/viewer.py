@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import viser
 
@@ -17,7 +17,7 @@ from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params, choices, entry_bounds, extra
 from sims.kit.sim import Sim, Typed
 from sims.kit.stage import Dragged, Stage
-from sims.kit.viser_internals import set_property, set_value
+from sims.kit.viser_internals import control_id, received, set_property, set_value
 
 ACCENT = (11, 95, 215)
 
@@ -55,12 +55,22 @@ class Control:
     """Least and greatest value, for the controls whose bounds may change."""
 
     def draw(self, params: Params) -> None:
+        set_value(self.handle, self.to_control(getattr(params, self.name)))
+
+    def reword(self, params: Params) -> None:
+        """Adapt label and bounds, before a value that needs them is drawn."""
         if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
         if (label := worded(params, self.name)) != self.label:
             self.label = self.handle.label = label
-        set_value(self.handle, self.to_control(getattr(params, self.name)))
+
+
+class Input(NamedTuple):
+    """A control that a page can set, and what becomes of its value."""
+
+    handle: Any
+    take: Callable[[Any], None]
 
 
 @dataclass
@@ -88,6 +98,8 @@ class Viewer:
         self.palette = DARK if look.dark else LIGHT
         self._style = self.palette.style()
         self._host = host
+        self._inputs: dict[str, Input] = {}
+        self._form: tuple[Any, ...] = ()
         client.gui.configure_theme(
             dark_mode=look.dark, show_logo=False, show_share_button=False, brand_color=ACCENT,
         )  # fmt: skip
@@ -103,10 +115,25 @@ class Viewer:
         self.scene = sim.scene(Stage(client, self.palette, self._dragged))
         client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window as the first drawing
 
+    def input(self, control: str, value: Any) -> bool | None:
+        """Take what the page says that a control is set to. None if no control has that name, False if it can't be."""
+        known = self._inputs.get(control)
+        if known is None:
+            return None
+        if not received(known.handle, value):
+            return False
+        with suppress(LookupError, ValueError):  # no page sends a value that can't be
+            known.take(known.handle.value)
+        return True
+
     def draw(self, params: Params, solution: Any) -> None:
         """Show a state; only what differs is sent, in one window."""
         with self.client.atomic():
             self.scene.draw(params, solution)
+            if (form := params.form()) != self._form:
+                self._form = form
+                for control in self._controls:
+                    control.reword(params)
             for control in self._controls:
                 control.draw(params)
             for place in self._places:
@@ -168,10 +195,10 @@ class Viewer:
 
     def _button(self, label: str, hint: str, name: str, color: Any = None) -> None:
         button = self.client.gui.add_button(label, hint=hint, color=color, disabled=self.look.watching)
+        self._listen(button, lambda _: self._host.act(name))
 
-        @button.on_click
-        async def _(_: Any) -> None:
-            self._host.act(name)
+    def _listen(self, handle: Any, take: Callable[[Any], None]) -> None:
+        self._inputs[control_id(handle)] = Input(handle, take)
 
     def _control(self, params: Params, name: str) -> Control:
         field = type(params).model_fields[name]
@@ -202,11 +229,7 @@ class Viewer:
             bounds = params.bounds(name)
             handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
 
-        @handle.on_update  # type: ignore[untyped-decorator]
-        async def _(_: Any) -> None:
-            with suppress(LookupError, ValueError):  # no page sends a value that can't be
-                self._host.change({name: from_control(handle.value)})
-
+        self._listen(handle, lambda v: self._host.change({name: from_control(v)}))
         return Control(name, handle, to_control, label, bounds)
 
     def _typed(self, typed: Typed[Any, Any]) -> TypedPlace:
@@ -215,11 +238,7 @@ class Viewer:
             hint=typed.description, disabled=self.look.watching,
         )  # fmt: skip
 
-        @handle.on_update
-        async def _(_: Any) -> None:
-            with suppress(ValueError):
-                self._host.drag(typed.handle, handle.value)
-
+        self._listen(handle, lambda v: self._host.drag(typed.handle, v))
         return TypedPlace(typed, handle)
 
     def _dragged(self, name: str, dragged: Dragged) -> None:

@@ -5,8 +5,10 @@ Why each is needed:
 - viser serves its own socket, and its server accepts any Origin and any message. `ViserHost` starts it
   without a socket: viewers reach it only through a `Wire` that the bridge feeds with messages it has checked.
 - The path of a viewer's websocket (which says whose session it is) isn't in viser's public API.
+- viser's buffer of what waits for a client costs half of an update; each client gets an `Outbox` in its place.
 - viser's pose setters skip a change that `np.allclose` calls equal (relative 1e-5), so what is drawn could lag
   behind what is shown, and they cost 40 µs each. `set_pose` compares exactly and costs a tenth.
+- What a control is set to in the page goes straight to its session (`received`), not through viser's tasks.
 - Assigning a control's value calls its own callbacks again; `set_value` doesn't.
 - Every handle works out the type hints of its properties anew, which is half the cost of opening a sim;
   here each kind of handle does so once.
@@ -26,11 +28,14 @@ from types import SimpleNamespace
 from typing import Any, get_type_hints
 from unittest import mock
 
+import numpy as np
 import viser
 import websockets.asyncio.server
 from viser import _messages
 from viser._assignable_props_api import AssignablePropsBase
 from websockets.exceptions import ConnectionClosedOK
+
+from sims.kit.outbox import Change, Outbox
 
 PROTOCOL = f"viser-v{viser.__version__}"
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
@@ -111,6 +116,16 @@ class ViserHost:
             self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self._handler: Callable[[Wire], Awaitable[None]] = captured["handler"]
         self.loop: asyncio.AbstractEventLoop = self.server.get_event_loop()
+        self._sending: set[asyncio.Task[None]] = set()
+        self.server.on_client_connect(self._take_over)
+
+    async def _take_over(self, client: viser.ClientHandle) -> None:
+        """Give a new client an outbox of ours; viser has nothing of its own to say to it yet."""
+        wire, outbox = self.wire_of(client), Outbox(self.loop)
+        client._websock_connection._state.message_buffer = outbox  # type: ignore[assignment]
+        sending = self.loop.create_task(outbox.run(wire.send))
+        self._sending.add(sending)
+        sending.add_done_callback(self._sending.discard)
 
     async def connect(self, wire: Wire) -> None:
         """Run one viewer's connection until it ends. Call on `loop`."""
@@ -133,12 +148,12 @@ def set_pose(
 ) -> None:
     """Assign a node's orientation and position where they differ at all from the last ones."""
     impl = node._impl
-    if wxyz is not None and tuple(impl.wxyz) != wxyz:
+    if wxyz is not None and tuple(impl.wxyz.tolist()) != wxyz:
         impl.wxyz[:] = wxyz
-        impl.api._queue_scene_message(_messages.SetOrientationMessage(impl.name, wxyz))
-    if position is not None and tuple(impl.position) != position:
+        _put(impl, "wxyz", "SetOrientationMessage", {"wxyz": wxyz})
+    if position is not None and tuple(impl.position.tolist()) != position:
         impl.position[:] = position
-        impl.api._queue_scene_message(_messages.SetPositionMessage(impl.name, position))
+        _put(impl, "position", "SetPositionMessage", {"position": position})
 
 
 def send_pose(node: viser.SceneNodeHandle) -> None:
@@ -148,18 +163,32 @@ def send_pose(node: viser.SceneNodeHandle) -> None:
     and the browser keeps the old node's pose.
     """
     impl = node._impl
-    w, x, y, z = impl.wxyz.tolist()
-    impl.api._queue_scene_message(_messages.SetOrientationMessage(impl.name, (w, x, y, z)))
-    x, y, z = impl.position.tolist()
-    impl.api._queue_scene_message(_messages.SetPositionMessage(impl.name, (x, y, z)))
+    _put(impl, "wxyz", "SetOrientationMessage", {"wxyz": impl.wxyz.tolist()})
+    _put(impl, "position", "SetPositionMessage", {"position": impl.position.tolist()})
+
+
+def set_visible(node: viser.SceneNodeHandle, visible: bool) -> None:
+    """Show or hide a node."""
+    impl = node._impl
+    if impl.visible != visible:
+        impl.visible = visible
+        _put(impl, "visible", "SetSceneNodeVisibilityMessage", {"visible": visible})
 
 
 def set_value(control: Any, value: Any) -> None:
     """Show a value in a control without calling its callbacks."""
-    impl = control._impl
-    if impl.value != value:
-        impl.value = value
-        impl.gui_api._websock_interface.queue_message(_messages.GuiUpdateMessage(impl.uuid, {"value": value}))
+    if control._impl.value != value:
+        control._impl.value = value
+        _put_gui(control._impl, "value", value)
+
+
+def received(control: Any, value: Any) -> bool:
+    """Take what a page says that a control is set to; False if this control can't be set to it."""
+    old = control._impl.value
+    if not _alike(old, value):
+        return False
+    control._impl.value = tuple(map(float, value)) if isinstance(old, tuple) else type(old)(value)
+    return True
 
 
 def takes(client: viser.ClientHandle, control: str, value: Any) -> bool:
@@ -181,16 +210,26 @@ def set_property(handle: Any, name: str, value: Any) -> None:
 
     An array must not be changed afterwards: it is sent later.
     """
-    setattr(handle._impl.props, name, value)
-    handle._queue_update(name, value)
+    impl = handle._impl
+    setattr(impl.props, name, value)
+    if hasattr(impl, "gui_api"):
+        _put_gui(impl, name, value)
+    elif isinstance(value, np.ndarray):
+        _put(impl, name, "SceneNodeUpdateMessage", {}, (name, value))
+    else:
+        _put(impl, name, "SceneNodeUpdateMessage", {"updates": {name: value}})
 
 
-def set_visible(node: viser.SceneNodeHandle, visible: bool) -> None:
-    """Show or hide a node."""
-    impl = node._impl
-    if impl.visible != visible:
-        impl.visible = visible
-        impl.api._queue_scene_message(_messages.SetSceneNodeVisibilityMessage(impl.name, visible))
+def _put(impl: Any, what: str, kind: str, fields: dict[str, Any], array: Any = None) -> None:
+    name, api = impl.name, impl.api
+    body = {"type": kind, "name": name, "owner": api._owner_id, **fields}
+    api._websock_interface.get_message_buffer().put((name, what), Change(("scene", name), body, array))
+
+
+def _put_gui(impl: Any, name: str, value: Any) -> None:
+    body = {"type": "GuiUpdateMessage", "uuid": impl.uuid, "updates": {name: value}}
+    outbox = impl.gui_api._websock_interface.get_message_buffer()
+    outbox.put((impl.uuid, name), Change(("gui", impl.uuid), body))
 
 
 def control_id(control: Any) -> str:
