@@ -5,20 +5,18 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
-import json
 import math
-from html import escape
 from typing import Any
 
 from fastapi import Request
-from fastapi.responses import HTMLResponse, Response
+from fastapi.responses import Response
 from starlette.templating import Jinja2Templates
 
 from app.settings import ROOT
-from sims import SIMS, by_slug
+from sims import SIMS
+from sims.kit import viser_client
 from sims.kit.params import Complaint
 from sims.kit.sim import Sim
-from sims.kit.viser_internals import client_page
 
 AnySim = Sim[Any, Any]
 OPTIONS = ("view", "controls", "theme")
@@ -41,11 +39,7 @@ def fingerprint(name: str) -> str:
 
 def static(request: Request, name: str) -> str:
     """Address of a static file."""
-    return _static(base(request), name)
-
-
-def _static(prefix: str, name: str) -> str:
-    return f"{prefix}/static/{name}?v={fingerprint(name)}"
+    return f"{base(request)}/static/{name}?v={fingerprint(name)}"
 
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
@@ -85,44 +79,23 @@ def _is_view(text: str) -> bool:
 
 
 def viewer(request: Request, sim: AnySim, *, watching: bool) -> Response:
-    """viser's client with our companion in its head."""
-    html, zipped = _viewer_page(base(request), sim.slug, watching)
-    headers = {"cache-control": "no-store", "vary": "accept-encoding"}
-    if "gzip" in request.headers.get("accept-encoding", ""):
-        return HTMLResponse(zipped, headers={**headers, "content-encoding": "gzip"})
-    return HTMLResponse(html, headers=headers)
-
-
-@functools.lru_cache(maxsize=64)
-def _viewer_page(prefix: str, slug: str, watching: bool) -> tuple[bytes, bytes]:
-    """The page and its compressed form: compressing 800 kB at each opening would hold up everybody else."""
-    sim = by_slug(slug)
-    assert sim is not None
+    """The page of a session: viser's client with our companion."""
     data = {
         "slug": sim.slug, "title": sim.title, "watching": watching,
         "view": [*sim.view.position, *sim.view.look_at], "radius": sim.view.radius, "panes": sim.panes is not None,
-        "still": {theme: _static(prefix, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
+        "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
-    head = (
-        f"<title>{escape(sim.title)} — Sim3</title>"
-        f'<link rel="icon" href="{_static(prefix, "icons/sim3.svg")}" type="image/svg+xml">'
-        f'<link rel="stylesheet" href="{_static(prefix, "tokens.css")}">'
-        f'<link rel="stylesheet" href="{_static(prefix, "viewer.css")}">'
-        f'<script id="sim3" type="application/json">{json.dumps(data).replace("<", chr(92) + "u003c")}</script>'
-        f'<script src="{_static(prefix, "boot.js")}"></script>'
-        f'<script type="module" src="{_static(prefix, "sim.js")}"></script>'
-    )
-    before, after = _around_head()
-    html = (before + head + after).encode()
-    return html, gzip.compress(html, 6)
+    client = f"{base(request)}/viser/{viser_client.fingerprint()}"
+    response = render(request, "viewer.html", sim=sim, data=data, client=client)
+    response.headers["cache-control"] = "no-store"
+    return response
 
 
 @functools.cache
-def _around_head() -> tuple[str, str]:
-    """viser's page before and after the place where our own head goes (its own title is left out)."""
-    page = client_page()
-    at = page.index("<title>")
-    return page[:at], page[page.index("</title>") + len("</title>") :]
+def client_file(name: str) -> tuple[bytes, bytes]:
+    """A file of viser's client, plain and compressed. Raises KeyError."""
+    plain = viser_client.files()[name]
+    return plain, gzip.compress(plain, 9)
 
 
 def card(sim: AnySim) -> dict[str, Any]:

@@ -27,8 +27,9 @@ from sims.kit.sim import Sim, Step
 from sims.kit.viewer import Viewer
 
 log = logging.getLogger("sim3")
-STATE_INTERVAL = 0.25
-"""Seconds between state messages on the channel while a learner drags."""
+STATE_INTERVAL = 0.4
+"""Seconds between state messages on the channel while a learner drags. Each changes the address, which Safari allows
+a hundred times in 30 s."""
 LOADING = 10.0
 """Seconds that a page may take from its address to its websockets; its session is kept so long at least."""
 UNVISITED = 60.0

@@ -25,6 +25,7 @@ from app.session import Full, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
 from geometry import GeometryError
 from sims import SIMS, by_slug
+from sims.kit import viser_client
 from sims.kit.params import BadParams, Params
 from sims.kit.sim import Sim, jsonable
 from sims.kit.viser_internals import ViserHost
@@ -79,13 +80,16 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     return app
 
 
+FOR_EVER = {"access-control-allow-origin": "*", "cache-control": "public, max-age=31536000, immutable"}
+"""For what never changes under its address, also in frames that are sandboxed into an origin of their own."""
+
+
 class Static(StaticFiles):
-    """Files that never change under their address, also for frames that are sandboxed into an origin of their own."""
+    """Our own files, whose addresses carry their fingerprints."""
 
     def file_response(self, *args: Any, **kwargs: Any) -> Response:
         response = super().file_response(*args, **kwargs)
-        response.headers["access-control-allow-origin"] = "*"
-        response.headers["cache-control"] = "public, max-age=31536000, immutable"
+        response.headers.update(FOR_EVER)
         return response
 
 
@@ -150,6 +154,17 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
         if not is_room(room):
             raise HTTPException(404, "There is no such room.")
         return pages.viewer(request, sim_or_404(slug), watching=True)
+
+    @app.get("/viser/{fingerprint}/{name}", include_in_schema=False)
+    async def client(request: Request, fingerprint: str, name: str) -> Response:
+        if fingerprint != viser_client.fingerprint() or name not in viser_client.files():
+            raise HTTPException(404, "There is no such file.")
+        kind = "text/css" if name.endswith(".css") else "text/javascript"
+        plain, zipped = pages.client_file(name)
+        if "gzip" not in request.headers.get("accept-encoding", ""):
+            return Response(plain, media_type=kind, headers={**FOR_EVER, "vary": "accept-encoding"})
+        headers = {**FOR_EVER, "vary": "accept-encoding", "content-encoding": "gzip"}
+        return Response(zipped, media_type=kind, headers=headers)
 
     @app.get("/sims/{slug}/s/{room}/{key}", include_in_schema=False)
     @app.get("/sims/{slug}/s/{room}", include_in_schema=False)

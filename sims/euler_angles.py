@@ -26,6 +26,12 @@ Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "
 NEAR_LOCK = 15.0
 """Degrees from lock within which the sim warns."""
 TAIT_BRYAN = {"z": "yaw", "y": "pitch", "x": "roll"}
+TURNS = {
+    order: ("yaw", "pitch", "roll")
+    if order[0] == order[2]
+    else (TAIT_BRYAN[order[0]], TAIT_BRYAN[order[1]], TAIT_BRYAN[order[2]])
+    for order in euler.ORDERS
+}
 NAMES = {"yaw": "Yaw ψ", "pitch": "Pitch θ", "roll": "Roll φ"}
 PROPER = {"yaw": "First α", "pitch": "Second β", "roll": "Third γ"}
 SHORT = {"yaw": "α", "pitch": "β", "roll": "γ"}
@@ -90,10 +96,7 @@ class EulerParams(Params):
     @property
     def names(self) -> tuple[str, str, str]:
         """Parameter names of the three turns, in the order of the turns."""
-        if self.proper:
-            return "yaw", "pitch", "roll"
-        a, b, c = (TAIT_BRYAN[axis] for axis in self.order)
-        return a, b, c
+        return TURNS[self.order]
 
     @property
     def angles(self) -> tuple[float, float, float]:

@@ -63,6 +63,7 @@
   window.sim3 = { ...sim, Query, viewer, dark, path: socket, search: location.search, eye, target };
   // Else phones widen the page for a menu that stands out at its side for a moment, the menu grows with it, and so on.
   document.querySelector("meta[name=viewport]").content += ", minimum-scale=1";
+  document.documentElement.style.setProperty("--s3-still", `url(${sim.still[dark ? "dark" : "light"]})`);
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   document.documentElement.style.colorScheme = dark ? "dark" : "light";
 })();

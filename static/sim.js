@@ -277,14 +277,11 @@ function dismissSoftwareNotice() {
 
 // --- Still picture until the scene is live ------------------------------------------------------------------------
 
-const still = element("div", { class: "s3-still", "aria-hidden": "true" });
-still.style.backgroundImage = `url(${sim.still[sim.dark ? "dark" : "light"]})`;
-
 function goLive() {
   if (sim.live || !state || !document.querySelector("canvas") || !document.querySelector("[data-s3-drawn]")) return;
   sim.live = true;
   showAddress();
-  still.remove();
+  document.querySelector(".s3-still").remove();
   describeScene(state.text);
   post({ type: "sim3:ready" });
   post({ type: "sim3:height", height: document.documentElement.scrollHeight });

@@ -33,7 +33,7 @@ from urllib.request import ProxyHandler, build_opener
 
 import viser
 
-from app.messages import decoder
+from app.messages import GuiUpdateMessage, decoder
 from app.session import Sessions
 from sims.kit.params import Params
 from sims.kit.sim import Sim
@@ -237,9 +237,16 @@ class Browser:
     def send(self, message: dict[str, Any]) -> None:
         """Send a message as viser's client would, through the check that the bridge makes."""
         data = encode_message(message)
-        value_of = decoder.decode(data).value_of
+        checked = decoder.decode(data)
         self.sent += 1
-        self._host.call(lambda: self.wire.feed(data, value_of))
+
+        def hand_on() -> None:
+            if isinstance(checked, GuiUpdateMessage):
+                assert self.viewer.input(checked.uuid, checked.updates.value)
+            else:
+                self.wire.feed(data, checked.value_of)
+
+        self._host.call(hand_on)
 
     def settle(self) -> None:
         """Wait until everything that viser has to send has arrived."""
@@ -250,13 +257,9 @@ class Browser:
         wait_for(lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send")
 
     def control(self, field: str) -> GuiElement:
-        """The control of a parameter, or of a button, by the parameter's or action's name or its label."""
-        session = self._session
-        if field in type(session.params).model_fields:
-            title = session.params.label(field)
-        else:
-            title = next((a.label for a in session.sim.actions if a.name == field), field)
-        return self.model.control(title)
+        """The control of a parameter, or one by its label."""
+        params = self._session.params
+        return self.model.control(params.label(field) if field in type(params).model_fields else field)
 
     def move(self, field: str, value: Any) -> None:
         """Set a control of the panel, as a hand on it would: it shows the value at once, then tells viser."""
@@ -265,8 +268,9 @@ class Browser:
         self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": value}})
 
     def press(self, action: str) -> None:
-        """Press a button."""
-        control = self.control(action)
+        """Press a button, by its action's name or its label."""
+        label = next((a.label for a in self._session.sim.actions if a.name == action), action)
+        control = self.model.control(label)
         self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": True}})
 
     def drag(self, name: str, *places: tuple[float, float, float], modifier: str | None = None) -> None:

@@ -2,7 +2,7 @@
 
 It takes the place of viser's own buffer per client, which walks every message field by field, keeps four indices
 and holds a window open for 1/60 s: half of the cost of an update, and of the memory of a session. Here a change
-that the kit makes is stored as it goes over the wire, and everything that waits leaves at the next turn of the loop.
+that the kit makes is stored as it goes over the wire, and what waits leaves at a flush or the next turn of the loop.
 """
 
 from __future__ import annotations
@@ -10,7 +10,8 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from collections.abc import Awaitable, Callable, Hashable, Iterator
+import types
+from collections.abc import Callable, Coroutine, Generator, Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -22,6 +23,8 @@ from viser import _messages
 from websockets.exceptions import ConnectionClosed
 
 Entity = tuple[str, str]
+Window = Coroutine[Any, Any, None]
+Send = Callable[[bytes], Window]
 _pack = msgspec.msgpack.Encoder().encode
 _compress = zstandard.ZstdCompressor(level=1).compress
 
@@ -37,13 +40,15 @@ class Change(NamedTuple):
 class Outbox:
     """Of messages about the same thing only the newest waits, in the order in which they last changed."""
 
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
-        self.done = False
+    def __init__(self, send: Send, loop: asyncio.AbstractEventLoop) -> None:
+        self._send = send
         self._loop = loop
         self._thread = threading.get_ident()
         self._waiting: dict[Hashable, Change | _messages.Message] = {}
-        self._wake = asyncio.Event()
         self._held = 0
+        self._rung = False
+        self._sending: asyncio.Task[None] | None = None
+        self.done = False
 
     def put(self, key: Hashable, message: Change | _messages.Message) -> None:
         """Have a message sent; it takes the place of a waiting one with the same key."""
@@ -51,18 +56,35 @@ class Outbox:
             return
         self._waiting.pop(key, None)
         self._waiting[key] = message
-        self._ring()
+        if not self._rung:
+            self._ring()
 
-    async def run(self, send: Callable[[bytes], Awaitable[None]]) -> None:
-        """Send what waits, until the viewer is gone. While one window is on its way, the next one gathers."""
+    def flush(self) -> None:
+        """Send what waits. While a window is on its way to a slow page, the next one gathers."""
+        if threading.get_ident() != self._thread:
+            self._loop.call_soon_threadsafe(self.flush)
+            return
+        self._rung = False
+        if self._held or self._sending or not self._waiting:
+            return
+        window = self._send(self.take())
         try:
-            while not self.done:
-                await self._wake.wait()
-                self._wake.clear()
-                if self._waiting and not self._held:
-                    await send(self.take())
+            waits_for = window.send(None)  # at most pages it is written at once: a task would only come later
+        except StopIteration:
+            return
         except ConnectionClosed:
-            self.done = True
+            self.set_done()
+            return
+        self._sending = self._loop.create_task(self._finish(window, waits_for))
+
+    async def _finish(self, window: Window, waits_for: Any) -> None:
+        try:
+            await _rest(window, waits_for)
+        except ConnectionClosed:
+            self.set_done()
+        finally:
+            self._sending = None
+            self.flush()
 
     def take(self) -> bytes:
         """All that waits, as one window of viser's format: sizes, packed messages, then arrays at multiples of 8."""
@@ -84,12 +106,11 @@ class Outbox:
         return b"".join(parts)
 
     def _ring(self) -> None:
-        if self._held:
-            return
+        self._rung = True
         if threading.get_ident() == self._thread:
-            self._wake.set()
+            self._loop.call_soon(self.flush)
         else:
-            self._loop.call_soon_threadsafe(self._wake.set)
+            self._loop.call_soon_threadsafe(self.flush)
 
     # ---- what viser asks of its buffer
 
@@ -126,17 +147,20 @@ class Outbox:
     def atomic_end(self) -> None:
         """What came since `atomic_start` leaves together."""
         self._held -= 1
-        if self._waiting:
+        if self._waiting and not self._rung:
             self._ring()
-
-    def flush(self) -> None:
-        """Nothing is kept back that a flush could send."""
 
     def set_done(self) -> None:
         """The viewer is gone."""
         self.done = True
         self._waiting.clear()
-        self._ring()
+
+
+@types.coroutine
+def _rest(window: Window, waits_for: Any) -> Generator[Any, Any, None]:
+    """What is left of a coroutine that was begun outside a task, and waits for something."""
+    yield waits_for
+    yield from window.__await__()
 
 
 def _body(message: Change | _messages.Message, arrays: list[memoryview]) -> dict[str, Any]:

@@ -123,7 +123,7 @@ def render(panes: Sequence[Pane], style: str) -> str:
     """All panes of a sim as one piece of HTML; `style` carries the palette."""
     figures = "".join(
         f'<figure class="s3-pane{" s3-wide" if p.wide else ""}"><figcaption>{escape(p.title)}'
-        f" <span>{escape(p.note)}</span></figcaption>{p.svg}</figure>"
+        f"<span> {escape(p.note)}</span></figcaption>{p.svg}</figure>"
         for p in panes
     )
     return f'<div class="s3-panes" style="{style}">{figures}</div>'

@@ -23,7 +23,6 @@ from collections import deque
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, redirect_stdout
 from io import StringIO
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, get_type_hints
 from unittest import mock
@@ -38,7 +37,6 @@ from websockets.exceptions import ConnectionClosedOK
 from sims.kit.outbox import Change, Outbox
 
 PROTOCOL = f"viser-v{viser.__version__}"
-CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
 
 
 @functools.cache
@@ -116,16 +114,12 @@ class ViserHost:
             self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self._handler: Callable[[Wire], Awaitable[None]] = captured["handler"]
         self.loop: asyncio.AbstractEventLoop = self.server.get_event_loop()
-        self._sending: set[asyncio.Task[None]] = set()
         self.server.on_client_connect(self._take_over)
 
     async def _take_over(self, client: viser.ClientHandle) -> None:
         """Give a new client an outbox of ours; viser has nothing of its own to say to it yet."""
-        wire, outbox = self.wire_of(client), Outbox(self.loop)
+        outbox = Outbox(self.wire_of(client).send, self.loop)
         client._websock_connection._state.message_buffer = outbox  # type: ignore[assignment]
-        sending = self.loop.create_task(outbox.run(wire.send))
-        self._sending.add(sending)
-        sending.add_done_callback(self._sending.discard)
 
     async def connect(self, wire: Wire) -> None:
         """Run one viewer's connection until it ends. Call on `loop`."""
@@ -235,9 +229,3 @@ def _put_gui(impl: Any, name: str, value: Any) -> None:
 def control_id(control: Any) -> str:
     """The identifier that a control has in the page."""
     return str(control._impl.uuid)
-
-
-@functools.cache
-def client_page() -> str:
-    """viser's own client, one HTML file."""
-    return CLIENT_PAGE.read_text(encoding="utf-8")

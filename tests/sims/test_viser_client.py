@@ -1,0 +1,51 @@
+"""viser's client as files: whole, and with what its own page would have set up."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from sims.kit import viser_client
+from sims.kit.viser_client import DIGITS, decoded, files
+
+
+def encoded(data: bytes) -> str:
+    """The packing that `decoded` undoes, written the other way round and slowly."""
+    text = ""
+    for at in range(0, len(data), 4):
+        group = data[at : at + 4]
+        value, digits = int.from_bytes(group, "big"), ""
+        for _ in range(len(group) + 1):
+            value, digit = divmod(value, 88)
+            digits = DIGITS[digit] + digits
+        text += digits
+    return text
+
+
+@pytest.mark.parametrize("length", [0, 1, 2, 3, 4, 5, 8, 1023])
+def test_decoding_gives_back_what_was_packed(length: int) -> None:
+    for data in (random.Random(length).randbytes(length), b"\xff" * length, b"\0" * length):
+        assert decoded(encoded(data)) == data
+
+
+def test_files_are_what_their_names_say() -> None:
+    style, code = files()["client.css"].decode("utf-8"), files()["client.js"].decode("utf-8")
+    assert style.count("{") == style.count("}") > 500
+    assert "mantine" in style
+    assert "__viserZstdWasm" in code
+    assert "<" not in style[:10]
+    assert code.rstrip().endswith((";", "}"))
+
+
+def test_loader_sets_up_what_the_code_expects_and_then_loads_it() -> None:
+    loader = files()["loader.js"].decode("utf-8")
+    assert loader.startswith("(async()=>{")
+    assert loader.index("globalThis.__viserZstdWasm=") < loader.index('import("./client.js")')
+    assert loader.endswith("})();")
+
+
+def test_a_page_of_another_make_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(viser_client, "PACKED", viser_client.re.compile("never there"))
+    with pytest.raises(RuntimeError, match="viser_client"):
+        files.__wrapped__()
