@@ -257,6 +257,7 @@ let tidying = false;
 
 new MutationObserver(() => {
   keepFocus();
+  goLive();
   if (tidying) return;
   tidying = true;
   requestAnimationFrame(() => {
@@ -264,7 +265,6 @@ new MutationObserver(() => {
     nameControls(document);
     markSliders();
     dismissSoftwareNotice();
-    goLive();
   });
 }).observe(document.body, { childList: true, subtree: true });
 
@@ -281,7 +281,8 @@ function goLive() {
   if (sim.live || !state || !document.querySelector("canvas") || !document.querySelector("[data-s3-drawn]")) return;
   sim.live = true;
   showAddress();
-  document.querySelector(".s3-still").remove();
+  // The controls are there; the scene is on the screen with the frame after next.
+  requestAnimationFrame(() => requestAnimationFrame(() => document.querySelector(".s3-still").remove()));
   describeScene(state.text);
   post({ type: "sim3:ready" });
   post({ type: "sim3:height", height: document.documentElement.scrollHeight });

@@ -19,7 +19,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 import zstandard
-from viser import _messages
+from viser.infra import Message
 from websockets.exceptions import ConnectionClosed
 
 Entity = tuple[str, str]
@@ -44,13 +44,13 @@ class Outbox:
         self._send = send
         self._loop = loop
         self._thread = threading.get_ident()
-        self._waiting: dict[Hashable, Change | _messages.Message] = {}
+        self._waiting: dict[Hashable, Change | Message] = {}
         self._held = 0
         self._rung = False
         self._sending: asyncio.Task[None] | None = None
         self.done = False
 
-    def put(self, key: Hashable, message: Change | _messages.Message) -> None:
+    def put(self, key: Hashable, message: Change | Message) -> None:
         """Have a message sent; it takes the place of a waiting one with the same key."""
         if self.done:
             return
@@ -98,7 +98,11 @@ class Outbox:
             }
         )
         squeezed = _compress(packed)
-        parts = [len(packed).to_bytes(8, "little"), len(squeezed).to_bytes(8, "little"), squeezed]
+        parts: list[bytes | memoryview] = [
+            len(packed).to_bytes(8, "little"),
+            len(squeezed).to_bytes(8, "little"),
+            squeezed,
+        ]
         at = 16 + len(squeezed)
         for array in arrays:
             parts += (bytes(-at % 8), array)
@@ -114,7 +118,7 @@ class Outbox:
 
     # ---- what viser asks of its buffer
 
-    def push(self, message: _messages.Message) -> None:
+    def push(self, message: Message) -> None:
         """Take a message of viser's own; one that is meant for the other viewers doesn't go to this one."""
         if message.excluded_self_client is not None:
             return
@@ -163,7 +167,7 @@ def _rest(window: Window, waits_for: Any) -> Generator[Any, Any, None]:
     yield from window.__await__()
 
 
-def _body(message: Change | _messages.Message, arrays: list[memoryview]) -> dict[str, Any]:
+def _body(message: Change | Message, arrays: list[memoryview]) -> dict[str, Any]:
     if not isinstance(message, Change):
         return message.as_serializable_dict(arrays)
     if message.array is None:
@@ -174,5 +178,5 @@ def _body(message: Change | _messages.Message, arrays: list[memoryview]) -> dict
     return {**message.body, "updates": placed}
 
 
-def _entity(message: Change | _messages.Message) -> Entity | None:
+def _entity(message: Change | Message) -> Entity | None:
     return message.entity if isinstance(message, Change) else message.entity_state_key()

@@ -30,7 +30,6 @@ from unittest import mock
 import numpy as np
 import viser
 import websockets.asyncio.server
-from viser import _messages
 from viser._assignable_props_api import AssignablePropsBase
 from websockets.exceptions import ConnectionClosedOK
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 
 import pytest
 
@@ -46,6 +47,6 @@ def test_loader_sets_up_what_the_code_expects_and_then_loads_it() -> None:
 
 
 def test_a_page_of_another_make_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(viser_client, "PACKED", viser_client.re.compile("never there"))
+    monkeypatch.setattr(viser_client, "PACKED", re.compile("never there"))
     with pytest.raises(RuntimeError, match="viser_client"):
         files.__wrapped__()
