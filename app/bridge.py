@@ -24,7 +24,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.messages import GuiUpdateMessage, decoder
 from app.session import Full, Session, Sessions, refusal
-from sims.kit.params import BadParams
+from sims.kit.params import BadParams, Params
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire, takes
@@ -46,6 +46,8 @@ class Hello(msgspec.Struct, tag="hello", tag_field="type", forbid_unknown_fields
     width: int
     controls: bool
     query: Annotated[str, msgspec.Meta(max_length=4000)]
+    opened: Annotated[str, msgspec.Meta(max_length=4000)] = ""
+    """The query that the page was opened with, to which a reset returns."""
 
 
 class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fields=True):
@@ -285,11 +287,10 @@ class Bridge:
         if not isinstance(hello, Hello):
             self.refusals["channel"] += 1
             raise WebSocketDisconnect(1008)
-        params = visit.sim.params()
-        if not visit.watching:
-            with contextlib.suppress(BadParams):
-                params = visit.sim.params.from_query(parse_qsl(hello.query, keep_blank_values=True))
-        session = self.sessions.open(visit.sim, visit.room, params, watching=visit.watching)
+        held, opened = ("", "") if visit.watching else (hello.query, hello.opened)
+        session = self.sessions.open(
+            visit.sim, visit.room, _state(visit.sim, held), opened=_state(visit.sim, opened), watching=visit.watching
+        )
         session.reduced_motion = session.reduced_motion or hello.reduced
         if not visit.hello.done():
             visit.hello.set_result(hello)
@@ -369,3 +370,12 @@ class Bridge:
     async def _refuse(self, ws: WebSocket, why: str) -> None:
         self.refusals[why] += 1
         await ws.close(1008)
+
+
+def _state(sim: Sim[Any, Any], query: str) -> Params:
+    """The state that a page says it holds; the first one of the sim where that is none."""
+    try:
+        state: Params = sim.params.from_query(parse_qsl(query, keep_blank_values=True))
+    except BadParams:
+        state = sim.params()
+    return state

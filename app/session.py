@@ -58,10 +58,10 @@ class Session:
         self.waiting = False
         """Only people who watch have come so far."""
 
-    def begin(self, params: Params) -> None:
-        """Somebody with control comes to a room that was waiting, and brings its state."""
+    def begin(self, params: Params, opened: Params) -> None:
+        """Somebody with control comes, and brings the room's state and the one that a reset leads back to."""
         self.waiting = False
-        self.initial = params
+        self.initial = opened
         self._set(params)
 
     def change(self, changes: Mapping[str, Any], *, live: bool = True) -> None:
@@ -212,18 +212,23 @@ class Sessions:
         """The running session of a room."""
         return self._by_room.get((sim.slug, room))
 
-    def open(self, sim: Sim[Any, Any], room: str, params: Params, *, watching: bool = False) -> Session:
-        """The session of a room, begun with `params` if nobody with control has been there. Raises `Full`."""
+    def open(
+        self, sim: Sim[Any, Any], room: str, params: Params, *, opened: Params | None = None, watching: bool = False
+    ) -> Session:
+        """The session of a room, begun with `params` if nobody with control has been there. Raises `Full`.
+
+        `opened` is the state of the link, where that is another: the page of a restarted server has gone on since.
+        """
         session = self.find(sim, room)
         if session is None:
             self.sweep()
             if len(self._by_room) >= self._limit:
                 self._drop_one()
             session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
-            session.waiting = watching
+            session.waiting = True
             self.counts["opened"] += 1
-        elif session.waiting and not watching:
-            session.begin(params)
+        if session.waiting and not watching:
+            session.begin(params, params if opened is None else opened)
         return session
 
     def _drop_one(self) -> None:

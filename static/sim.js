@@ -7,7 +7,8 @@ const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 const options = ["view", "controls", "theme"];
 const kept = new Query();
 for (const [name, value] of new Query(sim.search)) if (options.includes(name)) kept.append(name, value);
-let query = stateQuery(sim.search);
+const opened = stateQuery(sim.search);
+let query = opened;
 let socket = null;
 let retryAfter = 250;
 let state = null;
@@ -45,7 +46,7 @@ function connect() {
     retryAfter = 250;
     send({
       type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth,
-      controls: kept.get("controls") !== "0", query,
+      controls: kept.get("controls") !== "0", query, opened,
     });
   };
   socket.onmessage = (event) => receive(JSON.parse(event.data));

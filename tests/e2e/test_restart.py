@@ -51,3 +51,5 @@ def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: 
         watcher.sees(yaw=45, roll=-66, pitch=5)
         framed.press_keys("pitch", "ArrowLeft")
         framed.sees(pitch=-36)
+        learner.press("Reset")
+        learner.sees(yaw=45, pitch=20, roll=10)
