@@ -111,6 +111,22 @@ def lost_axis(yaw: float | Array, pitch: float | Array) -> Array | None:
     return np.where(lost[..., None], directions[..., 2], np.nan)
 
 
+def ring_rates(yaw: float | Array, pitch: float | Array, velocity: npt.ArrayLike) -> Array:
+    """Return the ring rates (..., 3), outer, middle, inner, that come nearest to an angular velocity (..., 3).
+
+    yaw and pitch (...) in radians, velocity in the world; rates in its unit. Where the rings can't give it, these are
+    the least-squares rates, and of those the slowest: what lies along a lost axis has no effect on them.
+    Raises GeometryError for a number that isn't finite; in a batch it gives NaN.
+    Source: Golub and Van Loan 2013, "Matrix Computations", sec. 5.5: the pseudoinverse of the ring axes.
+    """
+    wanted = as_array("velocity", velocity, 3)
+    directions, lengths = ellipsoid(yaw, pitch)
+    kept = lengths > RANK * lengths[..., :1]
+    along = np.vecmat(wanted, directions)
+    along = np.where(kept | np.isnan(along), along / np.where(kept, lengths, 1.0) ** 2, 0.0)
+    return np.asarray(np.vecmat(np.matvec(directions, along), ring_axes(yaw, pitch)))
+
+
 def at_lock(yaw: float, pitch: float, roll: float) -> AtLock | None:
     """Return the one combination of yaw and roll that R has at lock, and R in its reduced form; None elsewhere.
 

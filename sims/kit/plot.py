@@ -21,9 +21,9 @@ def step(greatest: float, most: int = 6) -> float:
     return next(power * k for k in (1.0, 2.0, 5.0, 10.0) if power * k * most >= greatest * (1.0 - 1e-9))
 
 
-def ticks(greatest: float, most: int = 6) -> list[tuple[float, str]]:
+def ticks(greatest: float, most: int = 6, gap: float | None = None) -> list[tuple[float, str]]:
     """Values of the ticks from 0 to `greatest`, with their words."""
-    gap = step(greatest, most)
+    gap = gap or step(greatest, most)
     digits = max(0, -math.floor(math.log10(gap) + 1e-9))
     return [(k * gap, figure(k * gap, digits)) for k in range(int(greatest / gap + 1e-9) + 1)]
 
@@ -31,9 +31,12 @@ def ticks(greatest: float, most: int = 6) -> list[tuple[float, str]]:
 class Plot:
     """Collects curves over axes that run from 0 to `x_max` and `y_max`; what is beyond is clipped."""
 
-    def __init__(self, name: str, title: str, *, x: str, y: str, x_max: float, y_max: float) -> None:
+    def __init__(
+        self, name: str, title: str, *, x: str, y: str, x_max: float, y_max: float, x_step: float | None = None
+    ) -> None:
+        """`x_step`: distance between ticks, where a round one isn't wanted (angles)."""
         self.name, self.title, self.x, self.y = name, title, x, y
-        self.x_max, self.y_max = x_max, y_max
+        self.x_max, self.y_max, self.x_step = x_max, y_max, x_step
         self._curves: list[str] = []
         self._words: list[str] = []
 
@@ -79,7 +82,7 @@ class Plot:
 
     def _grid(self) -> str:
         lines, words = [], []
-        for value, text in ticks(self.x_max):
+        for value, text in ticks(self.x_max, gap=self.x_step):
             u, _ = self.at(value, 0.0)
             lines.append(f"M{u:.1f} {TOP}V{FLOOR}")
             words.append(f'<text x="{u:.1f}" y="{FLOOR + 14}" text-anchor="middle">{text}</text>')

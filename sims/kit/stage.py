@@ -36,6 +36,8 @@ class Dragged:
 class Node:
     """A drawn thing with a pose relative to its parent."""
 
+    _scale: float | tuple[float, float, float] = 1.0
+
     def __init__(self, handle: Any) -> None:
         self.handle = handle
         self._pose: tuple[Any, Any] = (None, None)
@@ -51,17 +53,15 @@ class Node:
     def show(self, visible: bool) -> None:
         set_visible(self.handle, visible)
 
-
-class Solid(Node):
-    """A body, which can be stretched and bent."""
-
-    _scale: float | tuple[float, float, float] = 1.0
-
     def scale(self, factors: float | tuple[float, float, float]) -> None:
-        """Stretch it: by one factor, or by one along each of its own axes."""
+        """Stretch it (not what hangs on it): by one factor, or by one along each of its own axes."""
         if factors != self._scale:
             self._scale = factors
             set_property(self.handle, "scale", factors)
+
+
+class Solid(Node):
+    """A body, which can be bent."""
 
     def vertices(self, vertices: npt.NDArray[np.float64]) -> None:
         """Move the corners (n, 3) of its faces."""

@@ -39,6 +39,10 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
         "order=zxz&frame=extrinsic&yaw=-120.5&pitch=90&roll=45&progress=1.5",
         {"order": "zxz", "frame": "extrinsic", "yaw": -120.5, "pitch": 90.0, "roll": 45.0, "progress": 1.5},
     ),
+    "gimbal-lock": (
+        "yaw=-30&pitch=90&roll=45.5",
+        {"yaw": -30.0, "pitch": 90.0, "roll": 45.5},
+    ),
     "triangulation": (
         "baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
         {

@@ -1,0 +1,58 @@
+"""gimbal-lock: why a degree of freedom disappears.
+
+Three rings, nested: the outer one turns about the world's Z, the middle one about the outer ring's y, the inner one,
+which holds an aircraft, about the middle ring's x. What they can do together depends on the pitch alone.
+"""
+
+from __future__ import annotations
+
+from sims.gimbal_lock import actions
+from sims.gimbal_lock.model import GimbalParams, GimbalSolution, solve
+from sims.gimbal_lock.scene import GimbalScene
+from sims.gimbal_lock.words import describe, panes, readouts
+from sims.kit.sim import Action, Objective, Sim, View
+
+__all__ = ["SIM", "GimbalParams", "GimbalSolution", "solve"]
+
+SIM = Sim(
+    slug="gimbal-lock",
+    title="Gimbal lock",
+    summary="Turn three nested rings, bring two of their axes into line, and see which turn none of them can make.",
+    concepts=("Gimbal lock", "Degrees of freedom", "Singular values"),
+    objectives=(
+        Objective("Explain how two ring axes in line take one degree of freedom away", "Understand"),
+        Objective("Find both lock pitches, and the one combination of yaw and roll that is left at each", "Analyze"),
+        Objective("Judge from the singular values how near to lock the rings are, and what a turn costs there", "Evaluate"),
+    ),
+    params=GimbalParams,
+    solve=solve,
+    scene=GimbalScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((3.6, -3.3, 1.7), (0.0, 0.0, -0.1), 1.9),
+    panes=panes,
+    actions=(
+        Action("lock", "Go to gimbal lock", "Turn the middle ring to 90°", actions.go_to_lock),
+        Action(
+            "same-motion", "Show the same motion",
+            "At lock: the outer ring turns the aircraft away, the inner one turns it back", actions.same_motion,
+        ),
+        Action(
+            "try-lost", "Try to turn about the lost axis",
+            "At lock: a ghost turns about it; see whether the rings can follow", actions.try_lost_axis,
+        ),
+        Action("mark", "Mark this orientation", "Leave a ghost of the aircraft here, to compare with", actions.mark),
+    ),
+    states={
+        "turned": {"yaw": 30, "pitch": 35, "roll": -25},
+        "lock up": {"pitch": 90},
+        "lock down": {"pitch": -90, "yaw": 40, "roll": 25},
+        "near lock": {"pitch": 80, "yaw": -20},
+        "just off lock": {"pitch": 89.99},
+        "upside down": {"pitch": 180},
+        "half": {"pitch": 48.590378},
+        "same orientation": {"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
+        "ghost about the lost axis": {"pitch": 90, "show_ghost": True, "ghost": (90, 60, 90)},
+        "ghost elsewhere": {"pitch": 20, "show_ghost": True, "ghost": (90, 60, 90), "show_reach": False},
+    },
+)  # fmt: skip

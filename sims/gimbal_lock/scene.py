@@ -1,0 +1,105 @@
+"""The scene: three rings in a stand, an aircraft in the inner one, and the angular velocities that they reach."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sims.gimbal_lock import parts
+from sims.gimbal_lock.model import GimbalParams, GimbalSolution
+from sims.gimbal_lock.parts import RINGS, Ring
+from sims.kit import bodies
+from sims.kit.readout import figure, quantity
+from sims.kit.stage import Label, Stage, arc_pieces
+
+AIRCRAFT = 0.6
+"""Scale of the aircraft, which then has room in the inner ring."""
+PER_RATE = 0.46
+"""Metres of the ellipsoid for an angular velocity that is as large as the ring rates together."""
+FLAT = 1e-6
+"""Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
+TIP, LOST = 1.55, 1.5
+"""How far the axes and the arrow of the lost one reach, in metres from the middle."""
+SAME = 0.01
+"""Degrees from the aircraft within which its ghost hides in it."""
+WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
+"""Of the axes' lines, in pixels: where two coincide, both are seen."""
+CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)
+
+
+class GimbalScene:
+    """Three poses turn everything: each ring is nested in the one outside it."""
+
+    def __init__(self, stage: Stage) -> None:
+        stage.ground(size=6.0, height=parts.FLOOR)
+        dark = stage.palette.dark
+        steel = (70, 78, 88) if dark else (150, 158, 168)
+        stage.mesh("/stand", parts.stand(), steel)
+        stage.axes("/world", 0.5, radius=0.008).pose(position=(0.0, -1.25, parts.FLOOR + 0.01))
+        holders = ["", "/outer", "/outer/middle", "/outer/middle/inner"]
+        self.rings = [stage.group(name) for name in holders[1:]]
+        self.labels = [self._ring(stage, ring, *pair) for ring, *pair in zip(RINGS, holders, holders[1:], strict=False)]
+        body = {name: part.copy().apply_scale(AIRCRAFT) for name, part in bodies.aircraft().items()}
+        grey = (96, 108, 122) if dark else (201, 208, 216)
+        stage.mesh(f"{holders[3]}/hull", body["hull"], grey)
+        stage.mesh(f"{holders[3]}/mark", body["mark"], "held")
+        stage.mesh(f"{holders[3]}/mount", parts.mount(AIRCRAFT), steel)
+        self.ghost = stage.group("/ghost")
+        for name, part in body.items():
+            stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
+        self.ghost_label = stage.label("/ghost/label", "", (0.62, 0.0, 0.12))
+        self.reach = Reach(stage)
+
+    def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
+        """The ring; and its pivots and axis, which stay with what holds it."""
+        stage.mesh(f"{name}/ring", parts.ring(ring), ring.letter)
+        stage.mesh(f"{name}/stripe", parts.stripe(ring), "page")
+        stage.mesh(f"{holder}/pivots", parts.pivots(ring), ring.letter)
+        along = np.eye(3)["xyz".index(ring.letter)]
+        dash = {"x": None, "y": (0.14, 0.05), "z": (0.05, 0.05)}[ring.letter]
+        ends = [-TIP * along, (TIP - 0.1) * along]
+        stage.lines(f"{holder}/axis", ends, ring.letter, width=WIDTHS[ring.letter], dash=dash)
+        stage.arrow(f"{holder}/tip", (TIP - 0.14) * along, TIP * along, ring.letter, radius=0.02)
+        return stage.label(f"{holder}/label", "", (TIP + 0.12) * along)
+
+    def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
+        for node, wxyz in zip(self.rings, s.rings, strict=True):
+            node.pose(wxyz)
+        for ring, label, angle in zip(RINGS, self.labels, p.angles, strict=True):
+            label.text(f"{ring.letter.upper()} {ring.angle} {quantity(angle, '°', 0)}")
+        self.reach.draw(p, s)
+        self.ghost.show(s.ghost is not None and s.ghost.angle > SAME)
+        if s.ghost is not None:
+            self.ghost.pose(s.ghost.wxyz)
+            self.ghost_label.text(f"ghost, {quantity(s.ghost.angle, '°', 0)} away")
+
+
+class Reach:
+    """The ellipsoid of angular velocities, with its three outlines, and what becomes of its shortest axis."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.node = stage.group("/reach")
+        self.shape = stage.group("/reach/shape")
+        self.ball = stage.ball("/reach/shape/ball", 1.0, "ink", opacity=0.16, side="double")
+        self.outline = stage.lines("/reach/shape/outline", np.zeros((2, 3)), "ink", width=1.5)
+        self.outline.pieces(np.concatenate([np.roll(CIRCLE, k, axis=2) for k in range(3)]))
+        self.weak = stage.group("/reach/weak")
+        stage.lines("/reach/weak/axis", [(0, 0, -LOST), (0, 0, LOST)], "warn", width=2.5, dash=(0.06, 0.06))
+        self.weak_label = stage.label("/reach/weak/label", "", (0.0, 0.0, LOST + 0.1))
+        self.lost = stage.group("/reach/lost")
+        for name, end in (("arrow", LOST), ("opposite", -LOST)):
+            stage.arrow(f"/reach/lost/{name}", (0.0, 0.0, 0.0), (0.0, 0.0, end), "warn", radius=0.025)
+        stage.label("/reach/lost/label", "⚠ no ring turns about this", (0.0, 0.0, LOST + 0.1))
+
+    def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
+        a, b, c = (max(PER_RATE * v, FLAT) for v in s.singular_values.tolist())
+        self.node.pose(s.reach)
+        self.shape.show(p.show_reach)
+        self.ball.scale((a, b, c))
+        self.outline.scale((a, b, c))
+        self.lost.show(s.lost_axis is not None)
+        self.weak.show(s.near)
+        if s.near:
+            times = 1.0 / s.singular_values.item(2)
+            self.weak_label.text(f"⚠ turns about this take {figure(times, 0)}× the ring rates")
