@@ -22,7 +22,7 @@ SIM = Sim(
     objectives=(
         Objective("Explain how two ring axes in line take one degree of freedom away", "Understand"),
         Objective("Find both lock pitches, and the one combination of yaw and roll that is left at each", "Analyze"),
-        Objective("Judge from the singular values how near to lock the rings are, and what a turn costs there", "Evaluate"),
+        Objective("Judge from the singular values how near to lock the rings are, and what a turn costs", "Evaluate"),
     ),
     params=GimbalParams,
     solve=solve,

@@ -21,15 +21,15 @@ class GimbalParams(Params):
     """State of the sim."""
 
     yaw: float = number(
-        0, -180, 180, step=1, unit="°", title="Outer ring: yaw", symbol="ψ",
+        0, -180, 180, step=1, unit="°", title="Outer yaw", symbol="ψ",
         description="Turn of the outer ring in the stand, about Z",
     )  # fmt: skip
     pitch: float = number(
-        0, -180, 180, step=1, unit="°", title="Middle ring: pitch", symbol="θ",
+        0, -180, 180, step=1, unit="°", title="Middle pitch", symbol="θ",
         description="Turn of the middle ring in the outer one, about its Y",
     )  # fmt: skip
     roll: float = number(
-        0, -180, 180, step=1, unit="°", title="Inner ring: roll", symbol="φ",
+        0, -180, 180, step=1, unit="°", title="Inner roll", symbol="φ",
         description="Turn of the inner ring in the middle one, about its X; the aircraft is fixed in it",
     )  # fmt: skip
     show_reach: bool = switch(

@@ -18,7 +18,7 @@ SECTIONS = 72
 """Of a full turn."""
 DEPTH, WIDTH, CHAMFER = 0.08, 0.115, 0.016
 """Of every ring: metres along its radius, across its plane, and at its edges."""
-YOKE, FLOOR, SIDE = 1.42, -1.72, math.radians(200.0)
+YOKE, FLOOR, SIDE = 1.42, -1.6, math.radians(200.0)
 """Radius of the stand's arm, height of its foot, and the direction of the arm from the middle."""
 
 
@@ -35,9 +35,9 @@ class Ring(NamedTuple):
     dash: tuple[float, float] | None
 
 
-OUTER = Ring("outer", "z", "yaw", 1.2, (0.055, 0.055))
-MIDDLE = Ring("middle", "y", "pitch", 0.97, (0.19, 0.07))
-INNER = Ring("inner", "x", "roll", 0.74, None)
+OUTER = Ring("outer", "z", "yaw", 1.22, (0.055, 0.055))
+MIDDLE = Ring("middle", "y", "pitch", 1.02, (0.19, 0.07))
+INNER = Ring("inner", "x", "roll", 0.82, None)
 RINGS = (OUTER, MIDDLE, INNER)
 
 _QUARTER = {

@@ -13,7 +13,7 @@ from sims.kit import bodies
 from sims.kit.readout import figure, quantity
 from sims.kit.stage import Label, Stage, arc_pieces
 
-AIRCRAFT = 0.6
+AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
 PER_RATE = 0.46
 """Metres of the ellipsoid for an angular velocity that is as large as the ring rates together."""
@@ -21,10 +21,15 @@ FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
 TIP, LOST = 1.55, 1.5
 """How far the axes and the arrow of the lost one reach, in metres from the middle."""
+WORLD = (-0.62, -0.8, parts.FLOOR + 0.01)
+"""Where the axes of the world are shown: beside the stand, where they hide nothing."""
+NEAR_TIP = (0.0, 0.0, 0.93 * LOST)
 SAME = 0.01
 """Degrees from the aircraft within which its ghost hides in it."""
 WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
 """Of the axes' lines, in pixels: where two coincide, both are seen."""
+BEYOND = {"z": 0.35, "y": 0.18, "x": 0.12}
+"""How far beyond its axis a label stands, in metres: where two axes coincide, both are read."""
 CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)
 
 
@@ -34,9 +39,9 @@ class GimbalScene:
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=6.0, height=parts.FLOOR)
         dark = stage.palette.dark
-        steel = (70, 78, 88) if dark else (150, 158, 168)
+        steel = (112, 122, 134) if dark else (150, 158, 168)
         stage.mesh("/stand", parts.stand(), steel)
-        stage.axes("/world", 0.5, radius=0.008).pose(position=(0.0, -1.25, parts.FLOOR + 0.01))
+        stage.axes("/world", 0.4, radius=0.008).pose(position=WORLD)
         holders = ["", "/outer", "/outer/middle", "/outer/middle/inner"]
         self.rings = [stage.group(name) for name in holders[1:]]
         self.labels = [self._ring(stage, ring, *pair) for ring, *pair in zip(RINGS, holders, holders[1:], strict=False)]
@@ -48,7 +53,7 @@ class GimbalScene:
         self.ghost = stage.group("/ghost")
         for name, part in body.items():
             stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
-        self.ghost_label = stage.label("/ghost/label", "", (0.62, 0.0, 0.12))
+        self.ghost_label = stage.label("/ghost/label", "", (0.78, 0.0, 0.12))
         self.reach = Reach(stage)
 
     def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
@@ -61,7 +66,7 @@ class GimbalScene:
         ends = [-TIP * along, (TIP - 0.1) * along]
         stage.lines(f"{holder}/axis", ends, ring.letter, width=WIDTHS[ring.letter], dash=dash)
         stage.arrow(f"{holder}/tip", (TIP - 0.14) * along, TIP * along, ring.letter, radius=0.02)
-        return stage.label(f"{holder}/label", "", (TIP + 0.12) * along)
+        return stage.label(f"{holder}/label", "", (TIP + BEYOND[ring.letter]) * along)
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
         for node, wxyz in zip(self.rings, s.rings, strict=True):
@@ -82,15 +87,15 @@ class Reach:
         self.node = stage.group("/reach")
         self.shape = stage.group("/reach/shape")
         self.ball = stage.ball("/reach/shape/ball", 1.0, "ink", opacity=0.16, side="double")
-        self.outline = stage.lines("/reach/shape/outline", np.zeros((2, 3)), "ink", width=1.5)
+        self.outline = stage.lines("/reach/shape/outline", np.zeros((2, 3)), "ghost", width=1.2)
         self.outline.pieces(np.concatenate([np.roll(CIRCLE, k, axis=2) for k in range(3)]))
         self.weak = stage.group("/reach/weak")
         stage.lines("/reach/weak/axis", [(0, 0, -LOST), (0, 0, LOST)], "warn", width=2.5, dash=(0.06, 0.06))
-        self.weak_label = stage.label("/reach/weak/label", "", (0.0, 0.0, LOST + 0.1))
+        self.weak_label = stage.label("/reach/weak/label", "", NEAR_TIP, anchor="top-center")
         self.lost = stage.group("/reach/lost")
         for name, end in (("arrow", LOST), ("opposite", -LOST)):
             stage.arrow(f"/reach/lost/{name}", (0.0, 0.0, 0.0), (0.0, 0.0, end), "warn", radius=0.025)
-        stage.label("/reach/lost/label", "⚠ no ring turns about this", (0.0, 0.0, LOST + 0.1))
+        stage.label("/reach/lost/label", "⚠ no ring turns about this", NEAR_TIP, anchor="top-center")
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
         a, b, c = (max(PER_RATE * v, FLAT) for v in s.singular_values.tolist())
@@ -102,4 +107,4 @@ class Reach:
         self.weak.show(s.near)
         if s.near:
             times = 1.0 / s.singular_values.item(2)
-            self.weak_label.text(f"⚠ turns about this take {figure(times, 0)}× the ring rates")
+            self.weak_label.text(f"⚠ takes {figure(times, 0)}× the ring rates")

@@ -41,7 +41,8 @@ def _status(s: GimbalSolution) -> Note:
     if s.lost_axis is not None:
         return Note("Gimbal lock: outer and inner ring turn about one line. One degree of freedom is lost.", "warn")
     if s.near:
-        return Note(f"Near gimbal lock: the smallest singular value is only {least}.", "near")
+        times = figure(1.0 / s.singular_values.item(2), 1)
+        return Note(f"Near gimbal lock: about the weakest axis a turn takes {times} times the ring rates.", "near")
     return Note(f"No lock: the smallest singular value is {least}.")
 
 
