@@ -1,4 +1,7 @@
-"""What the buttons do: each shows a cause before its effect."""
+"""What the buttons do: each shows a cause before its effect.
+
+While a motion is compared with a ghost, the ellipsoid is out of the way.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +30,7 @@ def same_motion(p: GimbalParams) -> Iterator[Step]:
     yield from _turn(at, {"yaw": SWING}, 1.0)
     yield Step({}, 0.5)
     yield from _turn(at, {"roll": math.copysign(SWING, at["pitch"])}, 1.0)
+    yield Step({"show_reach": p.show_reach}, 0.0)
 
 
 def try_lost_axis(p: GimbalParams) -> Iterator[Step]:
@@ -45,6 +49,7 @@ def try_lost_axis(p: GimbalParams) -> Iterator[Step]:
     yield from _turn(at, quarter, 1.2)
     yield Step({}, 0.6)
     yield Step({"pitch": aim}, 1.0)
+    yield Step({"show_reach": p.show_reach}, 0.0)
 
 
 def mark(p: GimbalParams) -> Mapping[str, Any]:
@@ -53,7 +58,7 @@ def mark(p: GimbalParams) -> Mapping[str, Any]:
 
 
 def _mark(*ghost: float) -> Step:
-    return Step({"ghost": ghost, "show_ghost": True}, 0.0)
+    return Step({"ghost": ghost, "show_ghost": True, "show_reach": False}, 0.0)
 
 
 def _to_lock(p: GimbalParams) -> Generator[Step, None, Angles]:

@@ -15,6 +15,8 @@ from sims.kit.stage import Label, Stage, arc_pieces
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
+STROKES = {"length": ((0.98, 0.0, 0.0), (-0.88, 0.0, 0.0)), "span": ((-0.1, 0.98, 0.0), (-0.1, -0.98, 0.0))}
+"""Dashed through the ghost of the aircraft, from nose to tail and from tip to tip."""
 PER_RATE = 0.46
 """Metres of the ellipsoid for an angular velocity that is as large as the ring rates together."""
 FLAT = 1e-6
@@ -53,6 +55,8 @@ class GimbalScene:
         self.ghost = stage.group("/ghost")
         for name, part in body.items():
             stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
+        for name, ends in STROKES.items():
+            stage.lines(f"/ghost/{name}", AIRCRAFT * np.array(ends), "ghost", width=1.5, dash=(0.05, 0.04))
         self.ghost_label = stage.label("/ghost/label", "", (0.78, 0.0, 0.12))
         self.reach = Reach(stage)
 

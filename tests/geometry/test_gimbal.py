@@ -66,6 +66,43 @@ def test_conditioning_is_the_determinant(yaw: float, pitch: float) -> None:
     assert gimbal.conditioning(pitch) == pytest.approx(gimbal.singular_values(pitch).prod(), rel=0, abs=EXACT)
 
 
+velocities = st.tuples(*[st.floats(-10.0, 10.0)] * 3)
+
+
+@given(angles, angles, velocities)
+def test_ring_rates_are_those_of_the_pseudoinverse(yaw: float, pitch: float, velocity: tuple[float, ...]) -> None:
+    axes, values = gimbal.ring_axes(yaw, pitch), gimbal.singular_values(pitch)
+    if abs(values[2] / values[0] - gimbal.RANK) > 1e-9:
+        rates = gimbal.ring_rates(yaw, pitch, velocity)
+        expected = np.linalg.pinv(axes, rcond=gimbal.RANK) @ velocity
+        np.testing.assert_allclose(rates, expected, rtol=1e-9, atol=1e-12 * (1.0 + np.abs(expected).max()))
+
+
+@given(angles, near(*LOCKS), velocities)
+def test_ring_rates_grow_towards_lock_and_turn_as_wanted(yaw: float, pitch: float, velocity: tuple[float, ...]) -> None:
+    axes, (directions, lengths) = gimbal.ring_axes(yaw, pitch), gimbal.ellipsoid(yaw, pitch)
+    rates = gimbal.ring_rates(yaw, pitch, velocity)
+    kept = directions[:, : gimbal.degrees_of_freedom(lengths)]
+    np.testing.assert_allclose(kept.T @ axes @ rates, kept.T @ velocity, rtol=0, atol=1e-6)
+
+
+@given(angles, locks)
+def test_no_ring_rates_turn_about_the_lost_axis(yaw: float, pitch: float) -> None:
+    rates = gimbal.ring_rates(yaw, pitch, gimbal.ellipsoid(yaw, pitch).directions[:, 2])
+    np.testing.assert_allclose(rates, 0.0, rtol=0, atol=EXACT)
+
+
+def test_ring_rates_of_a_batch() -> None:
+    yaw, pitch = np.array([0.3, -1.0, 2.0]), np.array([0.5, math.pi / 2, math.nan])
+    velocity = np.array([[1.0, 2.0, 3.0], [0.0, 1.0, -1.0], [1.0, 0.0, 0.0]])
+    rates = gimbal.ring_rates(yaw, pitch, velocity)
+    for i in range(2):
+        np.testing.assert_allclose(rates[i], gimbal.ring_rates(yaw[i], pitch[i], velocity[i]), rtol=0, atol=EXACT)
+    assert np.isnan(rates[2]).all()
+    with pytest.raises(GeometryError, match="velocity"):
+        gimbal.ring_rates(0.0, 0.0, [1.0, 2.0])
+
+
 @given(angles, angles | near_lock)
 def test_degrees_of_freedom_are_the_rank(yaw: float, pitch: float) -> None:
     axes = gimbal.ring_axes(yaw, pitch)
