@@ -116,10 +116,11 @@ def ring_rates(yaw: float | Array, pitch: float | Array, velocity: npt.ArrayLike
 
     yaw and pitch (...) in radians, velocity in the world; rates in its unit. Where the rings can't give it, these are
     the least-squares rates, and of those the slowest: what lies along a lost axis has no effect on them.
-    Raises GeometryError for a number that isn't finite; in a batch it gives NaN.
+    A velocity that isn't finite gives NaN. Raises GeometryError for an angle that isn't; in a batch it gives NaN.
     Source: Golub and Van Loan 2013, "Matrix Computations", sec. 5.5: the pseudoinverse of the ring axes.
     """
     wanted = as_array("velocity", velocity, 3)
+    wanted = np.where(np.isfinite(wanted).all(axis=-1, keepdims=True), wanted, np.nan)
     directions, lengths = ellipsoid(yaw, pitch)
     kept = lengths > RANK * lengths[..., :1]
     along = np.vecmat(wanted, directions)

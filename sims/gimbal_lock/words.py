@@ -62,7 +62,7 @@ def _beside_ghost(p: GimbalParams, s: GimbalSolution, ghost: Ghost) -> Note:
 def _effort(s: GimbalSolution) -> Formula:
     words = "Ring rates for 1°/s about the weakest axis: outer, middle, inner"
     if s.lost_axis is not None:
-        words = "Best ring rates for 1°/s about the lost axis: none helps, so the rings stand still"
+        words = "Best ring rates for 1°/s about the lost axis: no rates help, so all stand still"
     return Formula(words, symbol("q̇"), row(s.rates.tolist(), 2), "°/s")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry import Array, GeometryError, epipolar, euler, quaternion, rotations, se3, triangulation
+from geometry import Array, GeometryError, epipolar, euler, gimbal, quaternion, rotations, se3, triangulation
 from geometry.camera import Camera, parallel_rig
 
 LEFT, RIGHT = parallel_rig(0.6, 600.0)
@@ -39,6 +39,8 @@ CASES: dict[str, tuple[Function, Array]] = {
     "euler_to_matrix": (lambda a: euler.euler_to_matrix(a, "zxz", "extrinsic"), point),
     "matrix_to_euler": (lambda M: euler.matrix_to_euler(M, "zyx", "intrinsic")[0], R),
     "lock_distance": (lambda a: euler.lock_distance(a, "zyx"), np.array(0.3)),
+    "gimbal.ring_rates": (lambda v: gimbal.ring_rates(0.3, 0.4, v), point),
+    "gimbal.ring_rates, pitch": (lambda a: gimbal.ring_rates(0.3, a, point), np.array(0.4)),
     "se3.transform": (lambda M: se3.transform(M, point)[..., :3, :3], R),
     "se3.apply": (lambda p: se3.apply(T, p), point),
     "se3.from_homogeneous": (lambda h: se3.from_homogeneous(h)[0], q),
