@@ -21,16 +21,18 @@ PER_RATE = 0.46
 """Metres of the ellipsoid for an angular velocity that is as large as the ring rates together."""
 FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
-TIP, LOST = 1.55, 1.5
+TIPS = {"z": 1.74, "y": 1.55, "x": 1.55}
+LOST = 1.5
 """How far the axes and the arrow of the lost one reach, in metres from the middle."""
 WORLD = (-0.62, -0.8, parts.FLOOR + 0.01)
 """Where the axes of the world are shown: beside the stand, where they hide nothing."""
-NEAR_TIP = (0.0, 0.0, 0.93 * LOST)
+NEAR_TIP = (0.09, 0.0, 0.82 * LOST)
+"""In the ellipsoid's frame, whose x points down at lock."""
 SAME = 0.01
 """Degrees from the aircraft within which its ghost hides in it."""
 WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
 """Of the axes' lines, in pixels: where two coincide, both are seen."""
-BEYOND = {"z": 0.35, "y": 0.18, "x": 0.12}
+BEYOND = {"z": 0.16, "y": 0.18, "x": 0.12}
 """How far beyond its axis a label stands, in metres: where two axes coincide, both are read."""
 CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)
 
@@ -57,7 +59,7 @@ class GimbalScene:
             stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
         for name, ends in STROKES.items():
             stage.lines(f"/ghost/{name}", AIRCRAFT * np.array(ends), "ghost", width=1.5, dash=(0.05, 0.04))
-        self.ghost_label = stage.label("/ghost/label", "", (0.78, 0.0, 0.12))
+        self.ghost_label = stage.label("/ghost/label", "", (-0.75, 0.0, 0.4))
         self.reach = Reach(stage)
 
     def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
@@ -67,10 +69,11 @@ class GimbalScene:
         stage.mesh(f"{holder}/pivots", parts.pivots(ring), ring.letter)
         along = np.eye(3)["xyz".index(ring.letter)]
         dash = {"x": None, "y": (0.14, 0.05), "z": (0.05, 0.05)}[ring.letter]
-        ends = [-TIP * along, (TIP - 0.1) * along]
+        tip = TIPS[ring.letter]
+        ends = [-TIPS["x"] * along, (tip - 0.1) * along]
         stage.lines(f"{holder}/axis", ends, ring.letter, width=WIDTHS[ring.letter], dash=dash)
-        stage.arrow(f"{holder}/tip", (TIP - 0.14) * along, TIP * along, ring.letter, radius=0.02)
-        return stage.label(f"{holder}/label", "", (TIP + BEYOND[ring.letter]) * along)
+        stage.arrow(f"{holder}/tip", (tip - 0.14) * along, tip * along, ring.letter, radius=0.02)
+        return stage.label(f"{holder}/label", "", (tip + BEYOND[ring.letter]) * along)
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
         for node, wxyz in zip(self.rings, s.rings, strict=True):
