@@ -22,8 +22,11 @@ PER_RATE = 0.46
 FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
 TIPS = {"z": 1.74, "y": 1.55, "x": 1.55}
+"""How far the axes reach, in metres from the middle."""
+ANCHORS = {"z": "bottom-center", "y": "bottom-center", "x": "top-center"}
+"""Labels stand above their tip or hang below it: where Z and X point up together, both are read."""
 LOST = 1.5
-"""How far the axes and the arrow of the lost one reach, in metres from the middle."""
+"""How far the arrow of the lost axis reaches."""
 WORLD = (-0.62, -0.8, parts.FLOOR + 0.01)
 """Where the axes of the world are shown: beside the stand, where they hide nothing."""
 NEAR_TIP = (0.09, 0.0, 0.82 * LOST)
@@ -32,8 +35,8 @@ SAME = 0.01
 """Degrees from the aircraft within which its ghost hides in it."""
 WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
 """Of the axes' lines, in pixels: where two coincide, both are seen."""
-BEYOND = {"z": 0.16, "y": 0.18, "x": 0.12}
-"""How far beyond its axis a label stands, in metres: where two axes coincide, both are read."""
+BEYOND = 0.07
+"""How far beyond its axis a label stands, in metres."""
 CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)
 
 
@@ -73,7 +76,7 @@ class GimbalScene:
         ends = [-TIPS["x"] * along, (tip - 0.1) * along]
         stage.lines(f"{holder}/axis", ends, ring.letter, width=WIDTHS[ring.letter], dash=dash)
         stage.arrow(f"{holder}/tip", (tip - 0.14) * along, tip * along, ring.letter, radius=0.02)
-        return stage.label(f"{holder}/label", "", (tip + BEYOND[ring.letter]) * along)
+        return stage.label(f"{holder}/label", "", (tip + BEYOND) * along, anchor=ANCHORS[ring.letter])
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
         for node, wxyz in zip(self.rings, s.rings, strict=True):
