@@ -45,6 +45,12 @@ def test_ticks_have_as_many_decimals_as_they_need(greatest: float, expected: lis
     assert [text for _, text in ticks(greatest)] == expected
 
 
+def test_ticks_of_angles_stand_where_they_are_asked_for() -> None:
+    assert [text for _, text in ticks(180.0, gap=45.0)] == ["0", "45", "90", "135", "180"]
+    made = Plot("p", "P", x="θ (°)", y="σ", x_max=180.0, y_max=1.0, x_step=45.0)
+    assert {"45", "90", "135"} <= set(words(render([made.pane()], LIGHT.style())).split())
+
+
 @given(st.floats(1e-6, 1e6), st.floats(1.1, 3))
 def test_axes_leave_room(value: float, spare: float) -> None:
     assert value * spare <= room(value, spare) * (1 + 1e-9) <= 10.0 * value * spare
