@@ -100,6 +100,11 @@ class GimbalSolution:
         """Whether a turn about the weakest axis is hard, but not impossible."""
         return self.dof == 3 and self.singular_values.item(2) < NEAR
 
+    @property
+    def effort(self) -> float:
+        """The fastest of the `rates`."""
+        return max(map(abs, self.rates.tolist()))
+
 
 def solve(p: GimbalParams) -> GimbalSolution:
     """All the mathematics of a state."""

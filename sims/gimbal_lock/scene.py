@@ -116,5 +116,4 @@ class Reach:
         self.lost.show(s.lost_axis is not None)
         self.weak.show(s.near)
         if s.near:
-            times = 1.0 / s.singular_values.item(2)
-            self.weak_label.text(f"⚠ takes {figure(times, 0)}× the ring rates")
+            self.weak_label.text(f"⚠ rings must turn {figure(s.effort, 0)}× as fast")

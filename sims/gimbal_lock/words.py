@@ -41,8 +41,8 @@ def _status(s: GimbalSolution) -> Note:
     if s.lost_axis is not None:
         return Note("Gimbal lock: outer and inner ring turn about one line. One degree of freedom is lost.", "warn")
     if s.near:
-        times = figure(1.0 / s.singular_values.item(2), 1)
-        return Note(f"Near gimbal lock: about the weakest axis a turn takes {times} times the ring rates.", "near")
+        rate = quantity(s.effort, "°/s", 1)
+        return Note(f"Near gimbal lock: for 1°/s about the weakest axis, two rings must turn at {rate}.", "near")
     return Note(f"No lock: the smallest singular value is {least}.")
 
 
@@ -56,7 +56,7 @@ def _beside_ghost(p: GimbalParams, s: GimbalSolution, ghost: Ghost) -> Note:
     away = f"The ghost is {quantity(ghost.angle, '°', 1)} away"
     if max(map(abs, ghost.rates.tolist())) < STILL:
         return Note(f"{away}, about the lost axis. No ring rates turn the aircraft towards it.", "warn")
-    return Note(f"{away}. Rates towards it, for 1°/s: {_rates(ghost.rates.tolist())}.")
+    return Note(f"{away}. Best ring rates towards it, for 1°/s: {_rates(ghost.rates.tolist())}.")
 
 
 def _effort(s: GimbalSolution) -> Formula:
