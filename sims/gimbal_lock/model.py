@@ -103,7 +103,7 @@ class GimbalSolution:
     @property
     def effort(self) -> float:
         """The fastest of the `rates`."""
-        return max(map(abs, self.rates.tolist()))
+        return float(max(map(abs, self.rates.tolist())))
 
 
 def solve(p: GimbalParams) -> GimbalSolution:
