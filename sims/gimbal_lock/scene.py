@@ -29,7 +29,7 @@ LOST = 1.5
 """How far the arrow of the lost axis reaches."""
 WORLD = (-0.62, -0.8, parts.FLOOR + 0.01)
 """Where the axes of the world are shown: beside the stand, where they hide nothing."""
-NEAR_TIP = (0.09, 0.0, 0.82 * LOST)
+NEAR_TIP = (0.09, 0.0, 0.72 * LOST)
 """In the ellipsoid's frame, whose x points down at lock."""
 SAME = 0.01
 """Degrees from the aircraft within which its ghost hides in it."""
