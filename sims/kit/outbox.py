@@ -13,13 +13,12 @@ import time
 import types
 from collections.abc import Callable, Coroutine, Generator, Hashable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
 import zstandard
-from viser.infra import Message
 from websockets.exceptions import ConnectionClosed
 
 Entity = tuple[str, str]
@@ -27,6 +26,22 @@ Window = Coroutine[Any, Any, None]
 Send = Callable[[bytes], Window]
 _pack = msgspec.msgpack.Encoder().encode
 _compress = zstandard.ZstdCompressor(level=1).compress
+
+
+class Message(Protocol):
+    """What viser gives its buffer, as far as it is used here."""
+
+    @property
+    def excluded_self_client(self) -> int | None: ...
+    @property
+    def lifecycle_phase(self) -> str | None: ...
+    @property
+    def entity_type(self) -> str | None: ...
+    @property
+    def entity_id_field(self) -> str | None: ...
+    def redundancy_key(self) -> str: ...
+    def entity_state_key(self) -> Entity | None: ...
+    def as_serializable_dict(self, binary_buffers: list[memoryview]) -> dict[str, Any]: ...
 
 
 class Change(NamedTuple):
