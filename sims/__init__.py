@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from sims.coordinate_frames import SIM as COORDINATE_FRAMES
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.gimbal_lock import SIM as GIMBAL_LOCK
 from sims.kit.sim import Sim
 from sims.triangulation import SIM as TRIANGULATION
 
-SIMS: tuple[Sim[Any, Any], ...] = (EULER_ANGLES, GIMBAL_LOCK, TRIANGULATION)
+SIMS: tuple[Sim[Any, Any], ...] = (COORDINATE_FRAMES, EULER_ANGLES, GIMBAL_LOCK, TRIANGULATION)
 
 
 def by_slug(slug: str) -> Sim[Any, Any] | None:

@@ -163,12 +163,15 @@ def number(
     )  # fmt: skip
 
 
-def choice(default: str, *, title: str, description: str, labels: Mapping[str, str], group: str = "") -> Any:
-    """One of the words of the field's Literal type; `labels` says how each is shown."""
-    return Field(
-        default, title=title, description=description,
-        json_schema_extra={"labels": dict(labels), "group": group, "control": "choice"},
-    )  # fmt: skip
+def choice(
+    default: str | None, *, title: str, description: str, labels: Mapping[str, str], group: str = "", absent: str = ""
+) -> Any:
+    """One of the words of the field's Literal type; `labels` says how each is shown.
+
+    A field that may be None says in `absent` how that is shown; in a link it is left out.
+    """
+    hints: Any = {"labels": dict(labels), "group": group, "control": "choice", "absent": absent}
+    return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
 def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:
@@ -252,7 +255,14 @@ def numeric_fields(model: type[Params]) -> tuple[str, ...]:
 
 def choices(field: FieldInfo) -> tuple[str, ...]:
     """The words a choice may take; empty for other fields."""
-    return tuple(a for a in get_args(field.annotation) if isinstance(a, str))
+    kinds = (field.annotation, *get_args(field.annotation))
+    return tuple(word for kind in kinds for word in get_args(kind) if isinstance(word, str))
+
+
+def options(field: FieldInfo) -> dict[str | None, str]:
+    """How each value of a choice is shown; None first, where the field may be absent."""
+    hints = extra(field)
+    return {**({None: hints["absent"]} if hints["absent"] else {}), **hints["labels"]}
 
 
 def spell(value: Any) -> str:

@@ -14,7 +14,7 @@ import viser
 
 from sims.kit import pane, readout
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, choices, entry_bounds, extra
+from sims.kit.params import Params, entry_bounds, extra, options
 from sims.kit.sim import Sim, Typed
 from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import control_id, received, set_property, set_value
@@ -212,7 +212,7 @@ class Viewer:
         bounds: tuple[float, float] | None = None
         handle: Any
         if hints["control"] == "choice":
-            labels = {word: hints["labels"][word] for word in choices(field)}
+            labels = options(field)
             words = {shown: word for word, shown in labels.items()}
             from_control, to_control = words.__getitem__, labels.__getitem__
             handle = gui.add_dropdown(label, tuple(words), initial_value=labels[value], **shared)

@@ -27,7 +27,7 @@ from playwright.sync_api import (
 )  # fmt: skip
 
 from sims import by_slug
-from sims.kit.params import Params, extra
+from sims.kit.params import Params, options
 from sims.kit.readout import figure
 from sims.kit.viewer import worded
 from tests.frames import Message, SceneModel, decode_message
@@ -227,16 +227,16 @@ class Learner:
 
     def type(self, name: str, text: str, *, box: int = 0) -> None:
         """Type into the number box of a control (of a vector's boxes, the one counted from 1), and press Enter."""
-        which = f", {box} of 2" if box else ""
+        which = f", {box} of {len(self.params[name])}" if box else ""
         field = self.frame.get_by_role("textbox", name=self.label(name) + which, exact=True)
         field.fill(text)
         field.press("Enter")
 
-    def choose(self, name: str, word: str) -> None:
-        """Open a dropdown and choose what is shown for a word."""
+    def choose(self, name: str, word: str | None) -> None:
+        """Open a dropdown and choose what is shown for a word, or for its absence."""
         sim = by_slug(self.slug)
         assert sim is not None
-        shown = extra(sim.params.model_fields[name])["labels"][word]
+        shown = options(sim.params.model_fields[name])[word]
         self.control("combobox", name).click()
         self.frame.get_by_role("option", name=shown, exact=True).click()
 

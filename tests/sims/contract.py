@@ -35,6 +35,20 @@ SOLUTION: dict[str, str] = {
 
 # One link per sim as it stands in course pages, and what it has always meant.
 GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
+    "coordinate-frames": (
+        "convention=ros&to=camera&handedness=left&point=2,-1,0.5&w=0.5&grid_xy=1&grid_yz=1&show_rule=0",
+        {
+            "convention": "ros",
+            "to": "camera",
+            "handedness": "left",
+            "point": [2.0, -1.0, 0.5],
+            "w": 0.5,
+            "grid_xy": True,
+            "grid_xz": False,
+            "grid_yz": True,
+            "show_rule": False,
+        },
+    ),
     "euler-angles": (
         "order=zxz&frame=extrinsic&yaw=-120.5&pitch=90&roll=45&progress=1.5",
         {"order": "zxz", "frame": "extrinsic", "yaw": -120.5, "pitch": 90.0, "roll": 45.0, "progress": 1.5},

@@ -272,3 +272,31 @@ def test_entries_of_a_vector_say_what_they_allow() -> None:
     ((_, _, allowed),) = caught.value.complaints
     assert allowed == "2 numbers from 0 to 639, then from 0 to 479, separated by commas"
     assert Pixel().bounds("uv") == (0, 639)
+
+
+# ---- a choice that may be absent
+
+
+class Glove(Params):
+    """Which hand, if that matters."""
+
+    hand: Literal["right", "left"] | None = choice(
+        None, title="Hand", description="Which", labels={"right": "Right", "left": "Left"}, absent="Either"
+    )
+
+
+def test_absent_choice_is_an_option_and_left_out_of_the_link() -> None:
+    field = Glove.model_fields["hand"]
+    assert kit.choices(field) == ("right", "left")
+    assert kit.options(field) == {None: "Either", "right": "Right", "left": "Left"}
+    assert kit.options(Toy.model_fields["kind"]) == {"one": "The one", "two": "The two"}
+    assert Glove().query() == ""
+    assert Glove(hand="left").query() == "hand=left"
+    assert Glove(hand="left").moved({"hand": None}) == Glove()
+
+
+@pytest.mark.parametrize("text", ["", "both", "none", "null", "None"])
+def test_absence_of_a_choice_has_no_word(text: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        Glove.from_query([("hand", text)])
+    assert caught.value.complaints == [("hand", text, "one of: right, left")]

@@ -1,0 +1,55 @@
+"""coordinate-frames: what a convention of axes is, its handedness, one point in seven conventions, and w.
+
+The world is a car on a floor: right, forward, up. It never moves; a convention only chooses the axes on its roof.
+"""
+
+from __future__ import annotations
+
+from sims.coordinate_frames import model
+from sims.coordinate_frames.model import FramesParams, FramesSolution, solve
+from sims.coordinate_frames.scene import FramesScene
+from sims.coordinate_frames.words import describe, readouts
+from sims.kit.sim import Action, Objective, Sim, View
+
+__all__ = ["SIM", "FramesParams", "FramesSolution", "solve"]
+
+SIM = Sim(
+    slug="coordinate-frames",
+    title="Coordinate frames",
+    summary="Choose axes for one and the same world, see which hand they follow, and read one point in all of them.",
+    concepts=("3D coordinate systems", "Handedness", "Homogeneous coordinates"),
+    objectives=(
+        Objective("Read one physical point in different conventions of axes, and convert between them", "Apply"),
+        Objective("Tell the handedness of axes, by hand and by the sign of a determinant", "Analyze"),
+        Objective("Explain what the fourth coordinate is for, and what it means that it is zero", "Understand"),
+    ),
+    params=FramesParams,
+    solve=solve,
+    scene=FramesScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((-2.7, -3.5, 2.15), (0.0, 0.0, 0.0), 1.85),
+    actions=(
+        Action("rule", "Animate the rule", "Fingers from X to Y, thumb along Z", model.sweep),
+        Action("infinity", "Let w go to 0", "The point runs away; a direction is left", model.run_away),
+    ),
+    handles={"/point": model.hold_point},
+    states={
+        "left-handed OpenGL": {"handedness": "left"},
+        "own handedness, said": {"handedness": "right", "to": "ros"},
+        "rotation": {"convention": "ros", "to": "camera", "point": (2, -1, 0.5), "rule": 0.5},
+        "reflection": {"to": "directx", "grid_xy": True},
+        "right-handed Unreal": {"convention": "unreal", "to": "unreal", "handedness": "right", "rule": 0},
+        "down": {"convention": "aviation", "to": "enu", "grid_xz": True, "grid_yz": True},
+        "all grids": {"convention": "camera", "to": "enu", "w": 0.8, **dict.fromkeys(model.GRIDS, True)},
+        "near": {"w": 2},
+        "out of view": {"w": 0.1},
+        "very far": {"w": 1e-300, "convention": "ros"},
+        "too far for numbers": {"point": (5, 5, 5), "w": 2.8e-308},
+        "direction": {"point": (0, 0, 1), "w": 0},
+        "direction, left-handed": {"point": (-3, 1, 1), "w": 0, "convention": "directx", "to": "ros"},
+        "neither": {"point": (0, 0, 0), "w": 0},
+        "origin": {"point": (0, 0, 0), "w": 0.5},
+        "without the hand": {"show_rule": False},
+    },
+)  # fmt: skip

@@ -1,0 +1,149 @@
+"""coordinate-frames: the axes change, the point is held, w goes to zero, from the hand to the pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import Picture, project
+
+Array = npt.NDArray[np.float64]
+AXES = ("/axes/x", "/axes/y", "/axes/third/z")
+POINT = (1.0, -0.6, 0.8)
+"""Where the point of the defaults is in the world."""
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        tips = np.column_stack([learner.scene.points(path)[0, 1] for path in AXES])
+        np.testing.assert_allclose(tips / np.linalg.norm(tips, axis=0), solution["basis"], rtol=0, atol=1e-6)
+        assert learner.reads("h", solution["homogeneous"], 2)
+        name = f"T{learner.params['to']} {learner.params['convention']}"
+        assert learner.reads(name, np.array(solution["matrix"]), 0)
+        assert learner.reads("detT", solution["determinant"], 0)
+        place = solution["point_world"] or solution["tip"]
+        np.testing.assert_allclose(held(learner), place, rtol=0, atol=1e-6)
+        return solution
+
+    return learner.until(said)
+
+
+def held(learner: Learner) -> Array:
+    place: Array = learner.scene.world_pose("/point")[:3, 3]
+    return place
+
+
+def shown(learner: Learner) -> None:
+    """On the screen: each axis in its colour, a little inside its head, and the point."""
+
+    def look() -> None:
+        picture = Picture(learner)
+        for axis, path in zip("xyz", AXES, strict=True):
+            tip = 0.95 * learner.scene.points(path)[0, 1]
+            assert picture.shows(axis, tip), f"no {axis} axis: {picture.around(tip)}"
+        assert picture.shows("held", held(learner), within=6), f"nothing to hold: {picture.around(held(learner))}"
+
+    learner.until(look)
+
+
+def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
+    learner = classroom.open("coordinate-frames/embed?show_rule=0")
+    agree(learner, convention="opengl", handedness=None)
+    shown(learner)
+
+    learner.choose("convention", "ros")
+    solution = agree(learner, convention="ros", point=[-0.6, -1, 0.8])
+    np.testing.assert_allclose(solution["basis"], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    np.testing.assert_allclose(held(learner), POINT, atol=1e-12)
+    shown(learner)
+
+    learner.choose("handedness", "left")
+    solution = agree(learner, handedness="left", point=[-0.6, -1, -0.8])
+    np.testing.assert_allclose(solution["coordinates"]["opengl"], [1, 0.8, 0.6], atol=1e-12)
+    np.testing.assert_allclose(held(learner), POINT, atol=1e-12)
+    learner.until(lambda: "left-handed: X forward, Y left, Z down" in learner.spoken())
+
+    learner.choose("to", "camera")
+    assert agree(learner, to="camera")["determinant"] == -1
+    learner.frame.get_by_text("improper (a reflection)").wait_for()
+    learner.choose("handedness", None)
+    assert agree(learner, handedness=None, point=[-0.6, -1, 0.8])["determinant"] == 1
+    assert "handedness" not in learner.address
+
+    learner.reload()
+    agree(learner, convention="ros", to="camera", point=[-0.6, -1, 0.8])
+
+
+def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> None:
+    learner = classroom.open("coordinate-frames/embed?convention=unreal&point=-0.6,1,0.8&show_rule=0")
+    before = np.array(agree(learner)["point_world"])
+    np.testing.assert_allclose(before, POINT, atol=1e-12)
+    camera = dict(learner.sockets.camera)
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+
+    x, y = project(before, camera, canvas)
+    mouse = learner.page.mouse
+    mouse.move(x - 3, y - 3)
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x - 60, y + 35, steps=8)
+    mouse.up()
+    learner.until(lambda: learner.params["point"] != [-0.6, 1, 0.8])
+    aim = (x - 60, y + 35)
+    learner.until(lambda: np.testing.assert_allclose(project(held(learner), camera, canvas), aim, atol=3))
+    after = np.array(agree(learner)["point_world"])
+    forward = np.subtract(camera["look_at"], camera["position"])
+    assert abs((after - before) @ forward) / np.linalg.norm(forward) < 0.02, (
+        "it moves in the plane that faces the viewer"
+    )
+    np.testing.assert_allclose(learner.sockets.camera["position"], camera["position"], atol=1e-9)
+    shown(learner)
+
+
+def test_each_control_of_coordinate_frames_answers(classroom: Classroom) -> None:
+    learner = classroom.open("coordinate-frames/embed")
+    learner.type("point", "-0.5", box=1)
+    learner.type("point", "0.25", box=3)
+    agree(learner, point=[-0.5, 0.8, 0.25])
+
+    learner.press_keys("rule", "Home")
+    agree(learner, rule=0)
+    assert learner.scene.visible("/rule/right/near")
+    learner.control("checkbox", "show_rule").click()
+    agree(learner, show_rule=False)
+    learner.until(lambda: not learner.scene.visible("/rule/right/near"))
+    for name in ("grid_xy", "grid_xz", "grid_yz"):
+        learner.control("checkbox", name).click()
+        agree(learner, **{name: True})
+    learner.until(lambda: all(learner.scene.visible(f"/axes/{name}") for name in ("grid_xy", "grid_xz", "grid_yz")))
+
+    learner.press("Animate the rule")
+    learner.until(lambda: learner.params["show_rule"] and 0 < learner.params["rule"] < 1)
+    agree(learner, show_rule=True, rule=1)
+    learner.press("Reset")
+    agree(learner, point=[1, 0.8, 0.6], rule=1, grid_xy=False, show_rule=True)
+
+
+def test_w_goes_to_zero(classroom: Classroom) -> None:
+    learner = classroom.open("coordinate-frames/embed?point=0,0,1")
+    learner.type("w", "0.5")
+    np.testing.assert_allclose(agree(learner, w=0.5)["point_world"], [0, -2, 0], atol=1e-12)
+    learner.type("w", "0.1")
+    assert agree(learner, w=0.1)["distance"] == 10
+    learner.frame.get_by_text("Out of view: the point is 10.0").wait_for()
+    learner.press_keys("w", "Home")
+    solution = agree(learner, w=0)
+    assert solution["cartesian"] is None
+    np.testing.assert_allclose(solution["direction"], [0, -1, 0], atol=1e-12)
+    learner.frame.get_by_text("w = 0: no point, but a direction").wait_for()
+    learner.until(lambda: "direction (0.00, 0.00, 1.00)" in learner.spoken())
+    learner.type("point", "0", box=3)
+    learner.frame.get_by_text("neither a point nor a direction").first.wait_for()
+    assert not learner.scene.visible("/point")
