@@ -192,6 +192,9 @@ document.addEventListener("keydown", (event) => {
     moveTo(name, { x, y }, grip.closest("svg").dataset.pane);
     keyed = { name, x: held.x, y: held.y, at: performance.now() };
     held = null;
+  } else if ((event.key === "Enter" || event.key === " ") && event.target.matches?.("[aria-expanded].mantine-Paper-root")) {
+    event.preventDefault();
+    event.target.click();
   } else if (event.key === "?" && !/^(INPUT|TEXTAREA)$/.test(event.target.tagName)) {
     showKeys();
   }
@@ -216,6 +219,13 @@ function nameControls(root) {
   }
   for (const button of root.querySelectorAll("button.mantine-ActionIcon-root:not([aria-label])")) {
     button.setAttribute("aria-label", "Settings of the viewer");
+  }
+  // viser's folders open to a pointer alone.
+  for (const icon of root.querySelectorAll(".mantine-Paper-root > :is(.tabler-icon-chevron-down, .tabler-icon-chevron-up)")) {
+    const head = icon.parentElement;
+    head.tabIndex = 0;
+    head.setAttribute("role", "button");
+    head.setAttribute("aria-expanded", icon.classList.contains("tabler-icon-chevron-up"));
   }
   document.getElementById("root").setAttribute("role", "main");
 }

@@ -1,7 +1,7 @@
 """The state of a sim: one frozen pydantic model, and its two spellings (query string and JSON).
 
-A field is declared with `number`, `choice`, `switch`, `vector` or `numbers`; what is said there feeds
-the live controls, the link, the JSON schema, validation and the tests.
+A field is declared with `number`, `optional`, `choice`, `switch`, `vector`, `numbers` or `letters`; what is said
+there feeds the live controls, the link, the JSON schema, validation and the tests.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from urllib.parse import urlencode
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
 
 LONGEST_VALUE = 400
 """Characters of one value in a query; a longer one is refused unread."""
@@ -39,6 +40,14 @@ class Params(BaseModel):
         """Words beside the control of a field in this state."""
         return _declared_title(type(self), name)
 
+    def entry_label(self, name: str, k: int) -> str:
+        """Words beside the control of the k-th entry, from 0, of a list."""
+        return str(extra(type(self).model_fields[name])["entry"]).format(k + 1)
+
+    def options(self, name: str) -> Mapping[Any, str]:
+        """What the dropdown of a choice or an optional number offers in this state: each value, and how it is shown."""
+        return _declared_options(type(self), name, self.bounds(name) if name in numeric_fields(type(self)) else None)
+
     def regions(self) -> dict[str, list[tuple[float, float]]]:
         """Spans of a slider's values that deserve a mark on its track in this state."""
         return {}
@@ -48,7 +57,11 @@ class Params(BaseModel):
         return type(self).model_validate({**self.__dict__, **changes})
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
-        """The state after a live control moved: numbers are kept within their bounds."""
+        """The state after a live control moved: numbers are kept within their bounds.
+
+        `angles.2` is the entry of `angles` after the first two: a control of one entry leaves the others alone.
+        """
+        changes = self._whole(changes)
         if len(changes) == 1 and (fast := self._number_moved(*next(iter(changes.items())))):
             return fast
         state = self.model_copy(update=dict(changes))
@@ -61,6 +74,17 @@ class Params(BaseModel):
             return None
         low, high = self.bounds(name)
         return self.model_copy(update={name: min(max(value, low), high)})
+
+    def _whole(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        whole: dict[str, Any] = {}
+        for name, value in changes.items():
+            field, _, k = name.partition(".")
+            if not k:
+                whole[name] = value
+            elif int(k) < len(entries := whole.get(field, getattr(self, field))):  # else it was taken away meanwhile
+                put = value if isinstance(entries, str) else (value,)
+                whole[field] = entries[: int(k)] + put + entries[int(k) + 1 :]
+        return whole
 
     def _clamped(self, name: str) -> Any:
         value = getattr(self, name)
@@ -114,7 +138,10 @@ class Params(BaseModel):
         state, wrong = cls._validated({name: unspell(cls.model_fields[name], text) for name, text in given.items()})
         complaints += [Complaint(name, clipped(given.get(name, "")), allowed) for name, allowed in wrong.items()]
         if complaints or state is None:
-            raise BadParams(complaints[:MOST_COMPLAINTS], {n: t for n, t in given.items() if n not in wrong})
+            while wrong:  # what is left may be wrong without what went
+                given = {name: text for name, text in given.items() if name not in wrong}
+                _, wrong = cls._validated({n: unspell(cls.model_fields[n], t) for n, t in given.items()})
+            raise BadParams(complaints[:MOST_COMPLAINTS], given)
         return state
 
     @classmethod
@@ -163,6 +190,17 @@ def number(
     )  # fmt: skip
 
 
+def optional(
+    low: int, high: int, *, title: str, description: str, words: str, off: str = "Off", group: str = ""
+) -> Any:
+    """A whole number that may be absent (None). Its dropdown offers `off`, and `words` for each number.
+
+    In `words`, {0} stands for the number and {1} for the next: "{0} ↔ {1}".
+    """
+    hints: Any = {"step": 1, "group": group, "control": "option", "words": words, "off": off}
+    return Field(None, ge=low, le=high, title=title, description=description, json_schema_extra=hints)
+
+
 def choice(
     default: str | None, *, title: str, description: str, labels: Mapping[str, str], group: str = "", absent: str = ""
 ) -> Any:
@@ -179,8 +217,38 @@ def switch(default: bool, *, title: str, description: str, group: str = "") -> A
     return Field(default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"})
 
 
-def vector(
+def numbers(
     default: tuple[float, ...],
+    low: float,
+    high: float,
+    *,
+    most: int,
+    title: str,
+    entry: str,
+    description: str,
+    step: float,
+    unit: str = "",
+    group: str = "",
+) -> Any:
+    """A list of one to `most` numbers, each with a slider that is called as `entry` says: "Joint {} angle"."""
+    hints: Any = {
+        "step": step, "unit": unit, "group": group, "control": "numbers", "low": low, "high": high, "most": most,
+        "entry": entry,
+    }  # fmt: skip
+    return Field(default, min_length=1, max_length=most, title=title, description=description, json_schema_extra=hints)
+
+
+def letters(
+    default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = ""
+) -> Any:
+    """One to `most` letters, together as in `zyy`; each has a dropdown, called as `entry` says: "Joint {} axis"."""
+    hints: Any = {"group": group, "control": "letters", "labels": dict(labels), "most": most, "entry": entry}
+    pattern = f"^[{''.join(labels)}]{{1,{most}}}$"
+    return Field(default, pattern=pattern, title=title, description=description, json_schema_extra=hints)
+
+
+def vector(
+    default: tuple[float, ...] | None,
     low: float | tuple[float, ...],
     high: float | tuple[float, ...],
     *,
@@ -193,7 +261,8 @@ def vector(
 ) -> Any:
     """Two or three numbers that belong together; `1,0.5,2` in a link.
 
-    `low` and `high` bound every entry, or each its own when they are tuples.
+    `low` and `high` bound every entry, or each its own when they are tuples, as they are where the vector may be
+    absent (None).
     """
     hints: Any = {"step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high}
     return Field(default, title=title, description=description, json_schema_extra=hints)
@@ -221,6 +290,15 @@ def _declared_title(model: type[Params], name: str) -> str:
 
 
 @lru_cache(maxsize=1024)
+def _declared_options(model: type[Params], name: str, bounds: tuple[float, float] | None) -> Mapping[Any, str]:
+    hints = extra(model.model_fields[name])
+    if bounds is None:
+        return options(model.model_fields[name])
+    offered = range(int(bounds[0]), int(bounds[1]) + 1)
+    return {None: hints["off"], **{k: hints["words"].format(k, k + 1) for k in offered}}
+
+
+@lru_cache(maxsize=1024)
 def _declared_ranges(model: type[Params], name: str) -> tuple[tuple[float, float], ...] | None:
     hints = extra(model.model_fields[name])
     own = isinstance(hints.get("low"), tuple)
@@ -228,14 +306,14 @@ def _declared_ranges(model: type[Params], name: str) -> tuple[tuple[float, float
 
 
 def _spans(ranges: Iterable[tuple[float, float]]) -> str:
-    spans = dict.fromkeys(f"from {plain(low)} to {plain(high)}" for low, high in ranges)
+    spans = dict.fromkeys(f"from {plain(low)} to {plain(high)}" if low <= high else "absent" for low, high in ranges)
     return ", then ".join(spans)
 
 
 def entry_bounds(field: FieldInfo) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Declared least and greatest values of a vector's entries."""
-    low, high, count = extra(field)["low"], extra(field)["high"], len(field.default)
-    return (low, high) if isinstance(low, tuple) else ((low,) * count, (high,) * count)
+    low, high = extra(field)["low"], extra(field)["high"]
+    return (low, high) if isinstance(low, tuple) else ((low,) * len(field.default), (high,) * len(field.default))
 
 
 def field_bounds(field: FieldInfo) -> tuple[float, float]:
@@ -285,7 +363,7 @@ def unspell(field: FieldInfo, text: str) -> Any:
     kind = extra(field).get("control")
     if kind == "switch":
         return {"1": True, "0": False}.get(text)
-    if isinstance(field.default, tuple):
+    if "low" in extra(field):
         return tuple(text.split(","))
     return text
 
@@ -303,12 +381,20 @@ def allowed_values(field: FieldInfo) -> str:
         return "1 or 0"
     if words := choices(field):
         return "one of: " + ", ".join(words)
-    if isinstance(field.default, tuple):
-        spans = _spans(zip(*entry_bounds(field), strict=True))
-        return f"{len(field.default)} numbers {spans}, separated by commas"
+    if kind == "letters":
+        return f"1 to {extra(field)['most']} letters, each one of: {', '.join(extra(field)['labels'])}"
+    if "low" in extra(field):
+        ranges = list(zip(*entry_bounds(field), strict=True))
+        count = f"1 to {extra(field)['most']}" if kind == "numbers" else f"{len(ranges)}"
+        return f"{count} numbers {_spans(ranges)}, separated by commas"
     low, high = field_bounds(field)
     span = f"from {plain(low)} to {plain(high)}"
-    return f"a number {span}" if field.annotation is not int else f"a whole number {span}"
+    return f"a whole number {span}" if field.annotation is int or kind == "option" else f"a number {span}"
+
+
+def disagreement(names: Iterable[str], words: str) -> PydanticCustomError:
+    """The error of a validator for fields that don't go together; the complaint is about each of those named."""
+    return PydanticCustomError("disagreement", "{words}", {"words": words, "names": ",".join(names)})
 
 
 def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[str, str]]:
@@ -318,4 +404,5 @@ def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[s
             yield name, allowed_values(model.model_fields[name])
         else:
             text = str(item["msg"]).removeprefix("Value error, ")
-            yield text.split(" ", 1)[0], text
+            names = str(item.get("ctx", {}).get("names", text.split(" ", 1)[0]))
+            yield from ((name, text) for name in names.split(","))

@@ -44,6 +44,8 @@ class Action(Generic[P]):
     label: str
     hint: str
     run: Callable[[P], Mapping[str, Any] | Iterator[Step]]
+    group: str = ""
+    """Folder in which it stands, closed at first."""
 
 
 @dataclass(frozen=True)

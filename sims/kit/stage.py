@@ -61,7 +61,11 @@ class Node:
 
 
 class Solid(Node):
-    """A body, which can be bent."""
+    """A body, which can be bent and painted."""
+
+    def color(self, rgb: tuple[int, int, int]) -> None:
+        """Paint it: `palette.surface` of a role."""
+        set_property(self.handle, "color", rgb)
 
     def vertices(self, vertices: npt.NDArray[np.float64]) -> None:
         """Move the corners (n, 3) of its faces."""
@@ -139,6 +143,14 @@ class Arrow(Node):
 
     def between(self, tail: Vector, tip: Vector) -> None:
         set_property(self.handle, "points", np.array([[tail, tip]], dtype=np.float32))
+
+
+class Arrows(Node):
+    """Several arrows whose ends move at once."""
+
+    def draw(self, ends: npt.NDArray[np.float64]) -> None:
+        """Tails and tips (n, 2, 3)."""
+        set_property(self.handle, "points", ends.astype(np.float32))
 
 
 ARC_PIECES = 48
@@ -254,6 +266,16 @@ class Stage:
             shaft_radius=radius, head_radius=2.6 * radius, head_length=7 * radius,
         )  # fmt: skip
         return Arrow(handle)
+
+    def arrows(self, name: str, ends: npt.ArrayLike, roles: str | Sequence[str], *, radius: float = 0.015) -> Arrows:
+        """Arrows from tails to tips (n, 2, 3), any number of them in one colour, or each in that of its role."""
+        colors = [self.palette.line(role) for role in ([roles] if isinstance(roles, str) else roles)]
+        handle = self.scene.add_arrows(
+            name, points=np.asarray(ends, dtype=float),
+            colors=np.array(colors[0] if isinstance(roles, str) else colors, np.uint8), shaft_radius=radius,
+            head_radius=2.6 * radius, head_length=7 * radius,
+        )  # fmt: skip
+        return Arrows(handle)
 
     def label(
         self, name: str, text: str, position: Vector = (0.0, 0.0, 0.0), *, anchor: Any = "center-center"

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple, Protocol
 import viser
 
 from sims.kit import pane, readout
+from sims.kit.entries import Entries
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, entry_bounds, extra, options
+from sims.kit.params import Params, entry_bounds, extra
 from sims.kit.sim import Sim, Typed
 from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import control_id, received, set_property, set_value
@@ -45,20 +46,29 @@ class Look:
 
 @dataclass
 class Control:
-    """A viser control of one field, with the way from the parameter's value to the control's."""
+    """A viser control of one field."""
 
     name: str
     handle: Any
-    to_control: Callable[[Any], Any]
     label: str
     bounds: tuple[float, float] | None = None
     """Least and greatest value, for the controls whose bounds may change."""
+    offered: Mapping[Any, str] | None = None
+    """Of a dropdown: each value of the parameter, and how it is shown."""
 
     def draw(self, params: Params) -> None:
-        set_value(self.handle, self.to_control(getattr(params, self.name)))
+        value = getattr(params, self.name)
+        set_value(self.handle, value if self.offered is None else self.offered[value])
+
+    def value(self, shown: Any) -> Any:
+        """What the learner set. Raises LookupError for what isn't offered."""
+        return shown if self.offered is None else {words: value for value, words in self.offered.items()}[shown]
 
     def reword(self, params: Params) -> None:
-        """Adapt label and bounds, before a value that needs them is drawn."""
+        """Adapt label, bounds and what is offered, before a value that needs them is drawn."""
+        if self.offered is not None and (offered := params.options(self.name)) != self.offered:
+            self.offered = offered
+            set_property(self.handle, "options", tuple(offered.values()))
         if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
@@ -107,7 +117,7 @@ class Viewer:
         if look.controls:
             self._dock()
         self._panes = self._add_panes()
-        self._controls: list[Control] = []
+        self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
         if look.controls:
@@ -187,7 +197,12 @@ class Viewer:
                     self._places = [self._typed(typed) for typed in self.sim.typed]
         with gui.add_folder("Actions"):
             for action in self.sim.actions:
-                self._button(action.label, action.hint, action.name)
+                if not action.group:
+                    self._button(action.label, action.hint, action.name)
+            for group in dict.fromkeys(action.group for action in self.sim.actions if action.group):
+                with gui.add_folder(group, expand_by_default=False):
+                    for action in (action for action in self.sim.actions if action.group == group):
+                        self._button(action.label, action.hint, action.name)
             self._button("Reset", "Back to the state of the link that you opened", "reset", color="gray")
             gui.add_html(TOOLBAR)
         with gui.add_folder("Read-outs"):
@@ -200,22 +215,21 @@ class Viewer:
     def _listen(self, handle: Any, take: Callable[[Any], None]) -> None:
         self._inputs[control_id(handle)] = Input(handle, take)
 
-    def _control(self, params: Params, name: str) -> Control:
+    def _control(self, params: Params, name: str) -> Control | Entries:
         field = type(params).model_fields[name]
         hints = extra(field)
         value = getattr(params, name)
         gui = self.client.gui
         shared: dict[str, Any] = {"hint": field.description, "disabled": self.look.watching}
         label = worded(params, name)
-        same: Callable[[Any], Any] = lambda v: v  # noqa: E731
-        from_control, to_control = same, same
         bounds: tuple[float, float] | None = None
+        offered: Mapping[Any, str] | None = None
         handle: Any
-        if hints["control"] == "choice":
-            labels = options(field)
-            words = {shown: word for word, shown in labels.items()}
-            from_control, to_control = words.__getitem__, labels.__getitem__
-            handle = gui.add_dropdown(label, tuple(words), initial_value=labels[value], **shared)
+        if hints["control"] in ("numbers", "letters"):
+            return Entries(gui, params, name, shared, self._listen, self._host.change)
+        if hints["control"] in ("choice", "option"):
+            offered = params.options(name)
+            handle = gui.add_dropdown(label, tuple(offered.values()), initial_value=offered[value], **shared)
         elif hints["control"] == "switch":
             handle = gui.add_checkbox(label, value, **shared)
         elif isinstance(field.default, tuple):
@@ -229,8 +243,9 @@ class Viewer:
             bounds = params.bounds(name)
             handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
 
-        self._listen(handle, lambda v: self._host.change({name: from_control(v)}))
-        return Control(name, handle, to_control, label, bounds)
+        control = Control(name, handle, label, bounds, offered)
+        self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
+        return control
 
     def _typed(self, typed: Typed[Any, Any]) -> TypedPlace:
         handle = self.client.gui.add_vector3(

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from sims import SIMS
-from sims.kit.params import Params, choices, extra, numeric_fields
+from sims.kit.params import Params, choices, entry_bounds, extra, numeric_fields
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
@@ -37,6 +37,8 @@ ENDS = ("least", "greatest")
 
 def _at_end(params: Params, name: str, end: int) -> Any:
     value, bound = getattr(params, name), params.bounds(name)[end]
+    if value is None and "low" in extra(field := type(params).model_fields[name]):
+        return entry_bounds(field)[end]
     return tuple(bound for _ in value) if isinstance(value, tuple) else bound
 
 

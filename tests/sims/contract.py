@@ -57,6 +57,16 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
         "yaw=-30&pitch=90&roll=45.5",
         {"yaw": -30.0, "pitch": 90.0, "roll": 45.5},
     ),
+    "transform-chain": (
+        "show=composed&angles=30,40,-30.5,90&lengths=1,0.8,0.5,0&axes=zyyx&swap=2",
+        {
+            "show": "composed",
+            "angles": [30.0, 40.0, -30.5, 90.0],
+            "lengths": [1.0, 0.8, 0.5, 0.0],
+            "axes": "zyyx",
+            "swap": 2,
+        },
+    ),
     "triangulation": (
         "baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
         {

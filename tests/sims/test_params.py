@@ -300,3 +300,70 @@ def test_absence_of_a_choice_has_no_word(text: str) -> None:
     with pytest.raises(BadParams) as caught:
         Glove.from_query([("hand", text)])
     assert caught.value.complaints == [("hand", text, "one of: right, left")]
+
+
+# ---- lists, letters and numbers that may be absent
+
+
+class Row(Params):
+    """A list of numbers with a letter for each, and which of them is meant."""
+
+    sizes: tuple[float, ...] = kit.numbers(
+        (1.0, 2.0), 0, 5, most=3, title="Sizes", entry="Size {}", description="How large each is", step=0.1, unit="m"
+    )
+    marks: str = kit.letters(
+        "ab", most=3, labels={"a": "An a", "b": "A b"}, title="Marks", entry="Mark {}", description="What each is"
+    )
+    chosen: int | None = kit.optional(1, 3, title="Chosen", description="Which is meant", words="{0} before {1}")
+    spot: tuple[float, float] | None = vector(
+        None, (-1.0, -2.0), (1.0, 2.0), title="Spot", description="A place, or none", step=0.1
+    )
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        return (1, len(self.sizes) - 1) if name == "chosen" else super().bounds(name)
+
+
+def test_lists_are_read_and_spelled() -> None:
+    row = Row.from_query([("sizes", "1,2.5,3"), ("marks", "abb"), ("chosen", "2"), ("spot", "0.5,-2")])
+    assert (row.sizes, row.marks, row.chosen, row.spot) == ((1, 2.5, 3), "abb", 2, (0.5, -2))
+    assert row.query() == "sizes=1,2.5,3&marks=abb&chosen=2&spot=0.5,-2"
+    assert Row().query() == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "allowed"),
+    [
+        ("sizes", "", "1 to 3 numbers from 0 to 5, separated by commas"),
+        ("sizes", "1,2,3,4", "1 to 3 numbers from 0 to 5, separated by commas"),
+        ("sizes", "1,6", "sizes must be from 0 to 5, got 1,6"),
+        ("marks", "abc", "1 to 3 letters, each one of: a, b"),
+        ("marks", "aaaa", "1 to 3 letters, each one of: a, b"),
+        ("chosen", "4", "a whole number from 1 to 3"),
+        ("chosen", "2", "chosen must be from 1 to 1, got 2"),
+        ("spot", "0,3", "spot must be from -1 to 1, then from -2 to 2, got 0,3"),
+        ("spot", "0", "2 numbers from -1 to 1, then from -2 to 2, separated by commas"),
+    ],
+)
+def test_lists_say_what_they_allow(name: str, text: str, allowed: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        Row.from_query([(name, text)])
+    assert caught.value.complaints == [(name, text, allowed)]
+
+
+def test_a_control_of_one_entry_leaves_the_others_alone() -> None:
+    row = Row().moved({"sizes.1": 9.0})
+    assert row == Row(sizes=(1.0, 5.0))
+    assert row.moved({"marks.0": "b"}).marks == "bb"
+    assert row.moved({"sizes.2": 1.0}) == row, "an entry that was taken away meanwhile"
+    assert row.moved({"sizes.0": 2.0, "sizes.1": 3.0}).sizes == (2.0, 3.0)
+    with pytest.raises(ValidationError):
+        row.moved({"marks.0": "c"})
+
+
+def test_dropdown_of_a_number_that_may_be_absent_offers_what_there_is() -> None:
+    assert dict(Row().options("chosen")) == {None: "Off", 1: "1 before 2"}
+    assert dict(Row(sizes=(1, 2, 3)).options("chosen")) == {None: "Off", 1: "1 before 2", 2: "2 before 3"}
+    assert dict(Toy().options("kind")) == {"one": "The one", "two": "The two"}
+    assert Row().entry_label("sizes", 1) == "Size 2"
+    with pytest.raises(ValidationError, match="chosen must be absent, got 1"):
+        Row(sizes=(1,), chosen=1)

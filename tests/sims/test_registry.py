@@ -13,7 +13,7 @@ import pytest
 from sims import SIMS, by_slug
 from sims.kit import pane, readout
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, choices, entry_bounds, extra, field_bounds, numeric_fields, options
+from sims.kit.params import Params, choices, entry_bounds, extra, field_bounds, numeric_fields
 from sims.kit.sim import Sim, jsonable
 from sims.kit.viewer import Look
 from tests.frames import differences
@@ -237,8 +237,16 @@ def field_cases() -> list[tuple[AnySim, str]]:
         (sim, name)
         for sim in SIMS
         for name, field in sim.params.model_fields.items()
-        if extra(field).get("control", "none") != "none"
+        if extra(field).get("control", "none") not in ("none", *LISTS)
     ]
+
+
+LISTS = ("numbers", "letters")
+"""Kinds of fields that have a control for each entry."""
+
+
+def entry_cases() -> list[tuple[AnySim, str]]:
+    return [(sim, n) for sim in SIMS for n, f in sim.params.model_fields.items() if extra(f).get("control") in LISTS]
 
 
 def each(cases: list[tuple[AnySim, str]]) -> pytest.MarkDecorator:
@@ -246,14 +254,21 @@ def each(cases: list[tuple[AnySim, str]]) -> pytest.MarkDecorator:
 
 
 each_control = each(field_cases())
-each_number = each([(sim, name) for sim, name in field_cases() if name in NUMERIC[sim.slug]])
+each_list = each(entry_cases())
+each_number = each(
+    [
+        (sim, name)
+        for sim, name in field_cases()
+        if name in NUMERIC[sim.slug] and extra(sim.params.model_fields[name])["control"] != "option"
+    ]
+)
 
 
 def shown(params: Params, name: str) -> Any:
     """What the control of a parameter should show."""
-    value, field = getattr(params, name), type(params).model_fields[name]
-    if choices(field):
-        return options(field)[value]
+    value = getattr(params, name)
+    if extra(type(params).model_fields[name])["control"] in ("choice", "option"):
+        return params.options(name)[value]
     return list(value) if isinstance(value, tuple) else value
 
 
@@ -264,8 +279,8 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
     field = sim.params.model_fields[name]
     start = getattr(rig.session.params, name)
     aims: list[Any]
-    if extra(field)["control"] == "choice":
-        aims = [*(word for word in options(field) if word != start), start]
+    if extra(field)["control"] in ("choice", "option"):
+        aims = [*(value for value in rig.session.params.options(name) if value != start), start]
     elif extra(field)["control"] == "switch":
         aims = [not start]
     else:
@@ -312,6 +327,30 @@ def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnyS
             assert control.value == pytest.approx(shown(params, name)), name
             if control.kind == "GuiSliderMessage":
                 assert control.bounds == params.bounds(name)
+
+
+@each_list
+def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
+    rig = rigs[sim.slug]
+    labels = extra(sim.params.model_fields[name]).get("labels")
+    for params in [p for s, _, p in FEW if s is sim]:
+        rig.show(params)
+        model, start = rig.browser.model, getattr(params, name)
+        for k in range(extra(sim.params.model_fields[name])["most"]):
+            control = model.control(params.entry_label(name, k))
+            assert control.props.get("visible", True) == (k < len(start))
+            if k < len(start):
+                assert control.value == pytest.approx(labels[start[k]] if labels else start[k])
+    last = len(start) - 1
+    for aim in labels or params.bounds(name):
+        rig.browser.move(params.entry_label(name, last), labels[aim] if labels else aim)
+        rig.settle()
+        assert getattr(rig.session.params, name) == (start[:last] + (aim if labels else (aim,)))
+    if not labels:
+        rig.browser.move(params.entry_label(name, last), params.bounds(name)[1] + 1000)
+        rig.settle()
+        assert getattr(rig.session.params, name)[last] == params.bounds(name)[1]
+        assert model.control(params.entry_label(name, last)).value == params.bounds(name)[1]
 
 
 @each_sim
@@ -363,7 +402,7 @@ def test_what_is_dragged_can_be_typed(sim: AnySim) -> None:
             assert place is not None
             label = f"{typed.title} ({typed.unit})"
             assert rig.browser.model.control(label).value == pytest.approx(place)
-            aim = [v + step for v, step in zip(place, (0.05, 0.1, -0.05), strict=True)]
+            aim = [v + step for v, step in zip(place, (-0.05, -0.1, 0.05), strict=True)]
             rig.browser.move(label, aim)
             rig.settle()
             place = typed.place(rig.session.params, rig.session.solution)

@@ -1,0 +1,60 @@
+"""Controls of a list that grows and shrinks: one for each entry, a slider for a number, a dropdown for a letter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import viser
+
+from sims.kit.params import Params, extra
+from sims.kit.viser_internals import set_value
+
+Take = Callable[[Any], None]
+
+
+class Entries:
+    """As many controls as the list may have entries; those of entries that there aren't are hidden."""
+
+    def __init__(
+        self, gui: viser.GuiApi, params: Params, name: str, shared: Mapping[str, Any],
+        listen: Callable[[Any, Take], None], change: Callable[[Mapping[str, Any]], None],
+    ) -> None:  # fmt: skip
+        hints = extra(type(params).model_fields[name])
+        self.name = name
+        self._labels: dict[str, str] | None = hints.get("labels")
+        self._letters = {shown: letter for letter, shown in (self._labels or {}).items()}
+        self._absent = min(hints["labels"]) if self._labels else min(max(0.0, hints["low"]), hints["high"])
+        """What a hidden control says, so that every page says the same."""
+        self._handles = [self._add(gui, params, k, hints, shared) for k in range(hints["most"])]
+        self._count = len(self._handles)
+        for k, handle in enumerate(self._handles):
+            listen(handle, partial(self._taken, change, f"{name}.{k}"))
+
+    def _add(self, gui: viser.GuiApi, params: Params, k: int, hints: Mapping[str, Any], shared: Any) -> Any:
+        label = params.entry_label(self.name, k) + (f" ({hints['unit']})" if hints.get("unit") else "")
+        start = self._shown(self._absent)
+        if self._labels:
+            return gui.add_dropdown(label, tuple(self._letters), initial_value=start, **shared)
+        return gui.add_slider(label, *params.bounds(self.name), hints["step"], start, **shared)
+
+    def _taken(self, change: Callable[[Mapping[str, Any]], None], entry: str, shown: Any) -> None:
+        change({entry: self._letters.get(shown, shown)})
+
+    def _shown(self, value: Any) -> Any:
+        return self._labels[value] if self._labels else value
+
+    def draw(self, params: Params) -> None:
+        """Show the entries of a state."""
+        values = getattr(params, self.name)
+        for k, handle in enumerate(self._handles):
+            set_value(handle, self._shown(values[k] if k < len(values) else self._absent))
+
+    def reword(self, params: Params) -> None:
+        """Show as many controls as there are entries."""
+        count = len(getattr(params, self.name))
+        if count != self._count:
+            self._count = count
+            for k, handle in enumerate(self._handles):
+                handle.visible = k < count

@@ -1,0 +1,67 @@
+"""transform-chain: rigid transforms one after another, as an arm of up to eight links.
+
+Link i is T_{i−1,i} = Rot(axis_i, angle_i) · Trans(length_i, 0, 0), and the end effector is where their product leads.
+"""
+
+from __future__ import annotations
+
+from sims.kit.sim import Objective, Sim, Typed, View
+from sims.transform_chain import hands
+from sims.transform_chain.model import ChainParams, ChainSolution, solve
+from sims.transform_chain.scene import ChainScene
+from sims.transform_chain.words import describe, readouts
+
+__all__ = ["SIM", "ChainParams", "ChainSolution", "solve"]
+
+SIM = Sim(
+    slug="transform-chain",
+    title="Transform chain",
+    summary="Join up to eight links, turn each joint, and read how their transforms multiply to the hand’s pose.",
+    concepts=("Rigid transforms", "SE(3)", "Forward kinematics"),
+    objectives=(
+        Objective("Compose the transforms of a chain into the pose of its end effector", "Apply"),
+        Objective("Explain why two transforms can’t be exchanged, and when two turns can", "Understand"),
+        Objective("Tell a singular pose from the arm’s Jacobian, and say which motion is lost", "Analyze"),
+    ),
+    params=ChainParams,
+    solve=solve,
+    scene=ChainScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((3.05, -3.0, 1.8), (1.0, 0.35, -0.25), 1.65),
+    actions=hands.ACTIONS,
+    handles={"/grip": hands.hold_end},
+    typed=(
+        Typed(
+            "/grip", "End effector", "Turns the joints so that the end effector gets there, as dragging it does",
+            (-16.0, -16.0, -16.0), (16.0, 16.0, 16.0), hands.end_place,
+        ),
+    ),
+    states={
+        "one link": {"angles": (50,), "lengths": (1.2,), "axes": "z"},
+        "planar 2R": {"angles": (30, 60), "lengths": (1, 0.8), "axes": "zz"},
+        "planar 2R stretched, singular": {"angles": (30, 0), "lengths": (1, 0.8), "axes": "zz"},
+        "planar 2R folded, singular": {"angles": (30, 180), "lengths": (1, 0.8), "axes": "zz"},
+        "stretched, singular": {"angles": (30, 40, 0)},
+        "above its base, singular": {"angles": (0, -60, -60), "lengths": (0, 0.8, 0.8), "axes": "zyy"},
+        "nearly singular": {"angles": (30, 2), "lengths": (1, 0.8), "axes": "zz"},
+        "twist that moves nothing": {"angles": (40, 20), "lengths": (1, 0.5), "axes": "xx"},
+        "all lengths zero": {"lengths": (0, 0, 0)},
+        "eight links": {
+            "angles": (30, -60, 40, 20, 30, -40, 60, 20), "lengths": (0.4,) * 8, "axes": "zyyxyzyx",
+            "swap": 3, "trace": 2,
+        },
+        "composed": {"show": "composed"},
+        "swapped, different axes": {"swap": 1},
+        "swapped, same axis": {"swap": 2},
+        "swapped turns, same axis": {"angles": (30, 40, 0), "lengths": (0, 0, 1), "axes": "zzy", "swap": 1},
+        "trace": {"trace": 2},
+        "target": {"target": (1.2, 0.4, 0.3)},
+        "out of reach": {"pull": (3, 0, 0.5), "angles": (0, -9.462, 0), "trace": 1},
+        "SCARA": {"angles": (-20, 70, 90, 0), "lengths": (0.425, 0.375, 0.15, 0), "axes": "zzyx"},
+        "six axes": {
+            "angles": (30, -60, 80, 0, 40, 0), "lengths": (0.15, 0.7, 0.6, 0, 0, 0.065), "axes": "zyyxyx",
+            "show": "composed",
+        },
+    },
+)  # fmt: skip

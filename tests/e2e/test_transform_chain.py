@@ -1,0 +1,163 @@
+"""transform-chain: hands on sliders, dropdowns, buttons and the arm itself, down to the pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from playwright.sync_api import Locator
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import Picture, project
+
+Array = npt.NDArray[np.float64]
+
+
+def entry(learner: Learner, role: Any, name: str) -> Locator:
+    return learner.frame.get_by_role(role, name=name, exact=True)
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        scene, n = learner.scene, len(learner.params["axes"])
+        path = ""
+        for i, T in enumerate(solution["composed"], start=1):
+            path += f"/link{i}"
+            np.testing.assert_allclose(scene.world_pose(path), T, rtol=0, atol=1e-6)
+            assert scene.visible(path)
+        np.testing.assert_allclose(scene.world_pose("/end_effector"), solution["end_effector"], rtol=0, atol=1e-6)
+        assert learner.reads(f"T0{n}", solution["end_effector"])
+        assert learner.reads(f"T{n}0", solution["inverse"])
+        for i, T in enumerate(solution[learner.params["show"]], start=1):
+            first = i - 1 if learner.params["show"] == "individual" else 0
+            assert learner.reads(f"T{first}{i}", T)
+        return solution
+
+    return learner.until(said)
+
+
+def test_sliders_turn_and_stretch_the_arm_and_the_link_restores_it(classroom: Classroom) -> None:
+    learner = classroom.open("transform-chain/embed")
+    agree(learner, angles=[30, 40, -30], lengths=[1, 0.8, 0.5], axes="zyy")
+    before = tip(learner)
+    shown(learner)
+
+    thumb = entry(learner, "slider", "Joint 2 angle (°)")
+    thumb.press("ArrowRight")
+    thumb.press("ArrowRight")
+    agree(learner, angles=[30, 41, -30], trace=2)
+    field = entry(learner, "textbox", "Joint 1 angle (°)")
+    field.fill("75")
+    field.press("Enter")
+    agree(learner, angles=[75, 41, -30], trace=1)
+    shown(learner)
+    assert not Picture(learner).shows("x", before, within=1), "the end effector is still where it was"
+
+    learner.frame.get_by_role("button", name="Link lengths").click()
+    field = entry(learner, "textbox", "Link 3 length (m)")
+    field.fill("0.9")
+    field.press("Enter")
+    agree(learner, lengths=[1, 0.8, 0.9])
+    learner.frame.get_by_role("button", name="Joint axes").press("Enter")
+    entry(learner, "combobox", "Joint 3 axis").click()
+    learner.frame.get_by_role("option", name="z: sideways", exact=True).click()
+    solution = agree(learner, axes="zyz")
+
+    learner.choose("show", "composed")
+    agree(learner, show="composed")
+    learner.reload()
+    assert agree(learner, angles=[75, 41, -30], lengths=[1, 0.8, 0.9], axes="zyz", show="composed") == {
+        **solution,
+        "arrows": learner.solved()["arrows"],
+    }
+
+
+def tip(learner: Learner) -> Array:
+    """The end of the end effector's x axis, a little inside its head."""
+    start, end = learner.scene.points("/end_effector/axes")[0]
+    inside: Array = start + 0.94 * (end - start)
+    return inside
+
+
+def shown(learner: Learner) -> None:
+    """On the screen: the x axis of the end effector where its frame says."""
+
+    def look() -> None:
+        picture = Picture(learner)
+        assert picture.shows("x", tip(learner)), f"no x axis: {picture.around(tip(learner))}"
+
+    learner.until(look)
+
+
+def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) -> None:
+    learner = classroom.open("transform-chain/embed?angles=10,20,30&swap=2")
+    learner.press("Add link")
+    agree(learner, angles=[10, 20, 30, 0], lengths=[1, 0.8, 0.5, 0.4], axes="zyyy", swap=2)
+    entry(learner, "slider", "Joint 4 angle (°)").press("ArrowLeft")
+    agree(learner, angles=[10, 20, 30, -0.5])
+    entry(learner, "combobox", "Swap transforms").click()
+    learner.frame.get_by_role("option", name="3 ↔ 4", exact=True).click()
+    solution = agree(learner, swap=3)
+    pose = learner.scene.world_pose("/swapped_end")
+    np.testing.assert_allclose(pose, solution["swapped_end_effector"], rtol=0, atol=1e-6)
+    learner.press("Remove link")
+    agree(learner, angles=[10, 20, 30], lengths=[1, 0.8, 0.5], axes="zyy", swap=None)
+    learner.until(lambda: entry(learner, "slider", "Joint 4 angle (°)").count() == 0)
+    learner.frame.get_by_role("button", name="Presets").click()
+    learner.press("Planar 2R arm")
+    agree(learner, axes="zz", lengths=[1, 0.8])
+    field = entry(learner, "textbox", "Joint 2 angle (°)")
+    field.fill("0")
+    field.press("Enter")
+    agree(learner, angles=[30, 0])
+    learner.frame.get_by_text("Singular pose: the joints can move").wait_for()
+    learner.until(lambda: "singular pose" in learner.spoken())
+    learner.press("Reset")
+    agree(learner, angles=[10, 20, 30], axes="zyy", swap=2)
+
+
+def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
+    learner = classroom.open("transform-chain/embed?angles=20,-40,70")
+    agree(learner, angles=[20, -40, 70])
+    x, y = grip(learner)
+    mouse = learner.page.mouse
+    mouse.move(x - 2, y - 2)
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x - 30, y - 24, steps=8)
+    mouse.up()
+    learner.until(lambda: learner.params["angles"] != [20, -40, 70])
+    learner.until(lambda: np.testing.assert_allclose(grip(learner), [x - 30, y - 24], atol=3))
+    solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
+    assert solution["pull_distance"] is None
+
+    boxes = learner.frame.get_by_role("textbox", name="End effector")
+    boxes.nth(2).fill("9")
+    boxes.nth(2).press("Enter")
+    learner.until(lambda: learner.params["pull"] is not None)
+    assert agree(learner)["pull_outside"]
+    learner.frame.get_by_text("Out of reach: this is as near").wait_for()
+    assert any("out of reach" in text for text in learner.scene.labels().values())
+
+
+def grip(learner: Learner) -> tuple[float, float]:
+    """Pixel on the page of the ball that can be dragged."""
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    return project(learner.scene.world_pose("/grip")[:3, 3], learner.sockets.camera, canvas)
+
+
+def test_a_joint_is_swept_and_stops_at_the_first_touch(classroom: Classroom) -> None:
+    learner = classroom.open("transform-chain/embed?trace=2")
+    learner.press("Sweep joint")
+    learner.until(lambda: learner.params["angles"][1] != 40)
+    entry(learner, "slider", "Joint 1 angle (°)").press("ArrowRight")
+    learner.until(lambda: learner.params["angles"][0] == 30.5)
+    stopped = agree(learner, trace=1)
+    assert stopped == agree(learner)
+    learner.press("Reset")
+    agree(learner, angles=[30, 40, -30], trace=2)
