@@ -255,14 +255,43 @@ let focused = null;
 
 document.addEventListener("focusin", (event) => {
   const grip = event.target.closest?.("[data-handle]");
-  focused = grip ? grip.dataset.handle : null;
+  const row = event.target.closest?.("[data-link]");
+  focused = grip ? `[data-handle="${CSS.escape(grip.dataset.handle)}"]` : row ? `${linked(row)} button` : null;
 });
 
 // At once, and not with the next picture: under software rendering that may be several keys away.
 function keepFocus() {
   if (!focused || document.activeElement !== document.body) return;
-  document.querySelector(`[data-handle="${focused}"]`)?.focus({ preventScroll: true });
+  document.querySelector(focused)?.focus({ preventScroll: true });
 }
+
+// --- Links: what stands for the same thing in pictures and tables lights up together; a click selects it -----------
+
+let lit = "";
+
+function linked(node) {
+  return `[data-link="${CSS.escape(node.dataset.link)}"]`;
+}
+
+function light() {
+  for (const node of document.querySelectorAll(".s3-lit")) if (!lit || !node.matches(lit)) node.classList.remove("s3-lit");
+  if (lit) for (const node of document.querySelectorAll(lit)) node.classList.add("s3-lit");
+}
+
+for (const kind of ["pointerover", "focusin"]) {
+  document.addEventListener(kind, (event) => {
+    const node = event.target.closest?.("[data-link]");
+    const now = node ? linked(node) : "";
+    if (now === lit) return;
+    lit = now;
+    light();
+  });
+}
+
+document.addEventListener("click", (event) => {
+  const node = event.target.closest?.("[data-link]");
+  if (node && !sim.watching) send({ type: "set", params: { selected: node.dataset.link } });
+});
 
 let tidying = false;
 
@@ -275,6 +304,7 @@ new MutationObserver(() => {
     tidying = false;
     nameControls(document);
     markSliders();
+    light();
     dismissSoftwareNotice();
   });
 }).observe(document.body, { childList: true, subtree: true });
@@ -353,6 +383,7 @@ function showKeys() {
     <tr><th scope="row">arrow keys on a point in a picture</th><td>one pixel; with <kbd>Shift</kbd> ten, with <kbd>Alt</kbd> a tenth</td></tr>
     <tr><th scope="row">drag in the scene</th><td>turn the view; right button moves it, wheel zooms</td></tr>
     <tr><th scope="row">drag a ringed point</th><td>move it; with <kbd>Shift</kbd> along one axis</td></tr>
+    <tr><th scope="row">point at, or click, a point or its row</th><td>light it up, or select it, everywhere</td></tr>
     <tr><th scope="row"><kbd>?</kbd></th><td>these keys</td></tr></table>`);
 }
 

@@ -294,6 +294,21 @@ class Browser:
                 }
             )
 
+    def click(self, name: str) -> None:
+        """Click on a node."""
+        self.send(
+            {
+                "type": "SceneNodeClickMessage",
+                "name": name,
+                "instance_index": None,
+                "ray_origin": (0.0, 0.0, 5.0),
+                "ray_direction": (0.0, 0.0, -1.0),
+                "screen_pos": (0.5, 0.5),
+                "modifier": None,
+                "owner": self.model.node(name).owner,
+            }
+        )
+
     def leave(self) -> None:
         """Close the page."""
         self._host.call(lambda: self._session.leave(viewer=self.viewer))

@@ -6,11 +6,14 @@ pixel centres, so the picture's edge runs from -0.5 to width - 0.5.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
 Point = Sequence[float]
+INSET = 14.0
+"""Pixels from the picture's edge at which what lies outside is marked."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,17 @@ class Picture:
             f'<line x1="{a[0]:.2f}" y1="{a[1]:.2f}" x2="{b[0]:.2f}" y2="{b[1]:.2f}" stroke="var(--{role})"'
             f' stroke-width="{width}"{dashed}{css} vector-effect="non-scaling-stroke"/>'
         )
+
+    def strokes(
+        self, pieces: Iterable[tuple[float, float, float, float]], role: str, *, width: float = 2, dash: str = ""
+    ) -> None:
+        """Many straight strokes (x, y, x', y') of one kind; cheaper than one by one."""
+        if drawn := "".join([f"M{a:.2f} {b:.2f}L{c:.2f} {d:.2f}" for a, b, c, d in pieces]):
+            dashed = f' stroke-dasharray="{dash}"' if dash else ""
+            self._parts.append(
+                f'<path d="{drawn}" fill="none" stroke="var(--{role})" stroke-width="{width}"{dashed}'
+                ' vector-effect="non-scaling-stroke"/>'
+            )
 
     def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "") -> None:
         """The line a x + b y + c = 0 across the whole picture."""
@@ -85,6 +99,51 @@ class Picture:
             f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
         )
 
+    def shows(self, at: Point) -> bool:
+        """Whether a place is inside the frame."""
+        return -0.5 <= at[0] <= self.width - 0.5 and -0.5 <= at[1] <= self.height - 0.5
+
+    def point(
+        self, link: str, at: Point, title: str, role: str = "ink", *, chosen: bool = False, label: str = ""
+    ) -> None:
+        """A named point: where else `link` stands (table, other pictures) lights up with it, and a click selects it."""
+        kind = "s3-point s3-selected" if chosen else "s3-point"
+        ring = '<circle class="s3-ring" r="13"/>' if chosen else ""
+        words = f'<text x="18" y="-14" class="s3-halo" fill="var(--held)">{escape(label)}</text>' if label else ""
+        self._over.append(
+            f'<g data-link="{escape(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
+            f'<title>{escape(title)}</title><circle class="s3-reach" r="16"/>{ring}'
+            f'<circle class="s3-spot" r="5" fill="var(--{"held" if chosen else role})"/>{words}</g>'
+        )
+
+    def outside(
+        self, point: Point, role: str, words: str, *, link: str = "", title: str = "", chosen: bool = False
+    ) -> None:
+        """An arrowhead at the border towards a homogeneous point (x, y, w) that isn't in the picture.
+
+        At infinity (w = 0) it is a double one, and the words end in the sign for infinity.
+        """
+        if (found := border(point, self.width, self.height)) is None:
+            return
+        (x, y), (dx, dy) = found
+        far = point[2] == 0.0
+        head = "M-11 -9L5 0L-11 9z" + ("M-23 -9L-7 0L-23 9z" if far else "")
+        anchor = "end" if dx > 0.4 else "start" if dx < -0.4 else "middle"
+        away = 44.0 if far else 32.0
+        text = (
+            f'<text x="{-away * dx:.1f}" y="{9 - away * dy:.1f}" text-anchor="{anchor}" class="s3-halo"'
+            f' fill="var(--{role})">{escape(words)}{" ∞" if far else ""}</text>'
+            if words
+            else ""
+        )
+        linked = f' data-link="{escape(link)}"' if link else ""
+        kind = "s3-point s3-selected" if chosen else "s3-point"
+        self._over.append(
+            f'<g{linked} class="{kind}" transform="translate({x:.2f} {y:.2f})"><title>{escape(title or words)}</title>'
+            f'<path class="s3-spot" d="{head}" fill="var(--{role})"'
+            f' transform="rotate({math.degrees(math.atan2(dy, dx)):.1f})"/>{text}</g>'
+        )
+
     def pane(self, note: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
@@ -117,6 +176,27 @@ def across(line: Point, width: float, height: float) -> tuple[Point, Point] | No
         return None
     far = max(inside[1:], key=lambda p: abs(p[0] - inside[0][0]) + abs(p[1] - inside[0][1]))
     return inside[0], far
+
+
+def border(point: Point, width: float, height: float) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Where at the picture's border a homogeneous point outside is marked, and the unit direction in which it lies.
+
+    The mark is on the way from the picture's middle to the point (x / w, y / w); a point at infinity (w = 0) lies
+    in the direction (x, y). None for a point in the very middle, which has no direction.
+    """
+    x, y, w = (float(v) for v in point)
+    middle_x, middle_y = 0.5 * width - 0.5, 0.5 * height - 0.5
+    sign = -1.0 if w < 0.0 else 1.0
+    dx, dy = sign * (x - middle_x * w), sign * (y - middle_y * w)
+    length = math.hypot(dx, dy)
+    if not length:
+        return None
+    dx, dy = dx / length, dy / length
+    reach = min(
+        (0.5 * width - INSET) / abs(dx) if dx else math.inf,
+        (0.5 * height - INSET) / abs(dy) if dy else math.inf,
+    )
+    return (middle_x + reach * dx, middle_y + reach * dy), (dx, dy)
 
 
 def render(panes: Sequence[Pane], style: str) -> str:

@@ -88,19 +88,32 @@ class Formula:
 
 @dataclass(frozen=True)
 class Table:
-    """A small table of words and numbers; the first row is its head."""
+    """A small table of words and numbers; the first row is its head.
+
+    `links` names what each further row stands for: it lights up with its mark in the pictures, and is `selected` by
+    a click or by the button that its first cell becomes.
+    """
 
     note: str
     rows: Sequence[Sequence[str]]
+    links: Sequence[str] = ()
+    selected: str = ""
 
     def html(self) -> str:
         head, *body = self.rows
         top = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in head)
-        rest = "".join(
-            "<tr>" + f'<th scope="row">{escape(r[0])}</th>' + "".join(f"<td>{escape(c)}</td>" for c in r[1:]) + "</tr>"
-            for r in body
-        )
+        rest = "".join([self._row(k, cells) for k, cells in enumerate(body)])
         return f'<table class="s3-table"><caption>{escape(self.note)}</caption><tr>{top}</tr>{rest}</table>'
+
+    def _row(self, k: int, cells: Sequence[str]) -> str:
+        numbers = "".join([f"<td>{escape(cell)}</td>" for cell in cells[1:]])
+        name = escape(cells[0])
+        if not self.links:
+            return f'<tr><th scope="row">{name}</th>{numbers}</tr>'
+        chosen = self.links[k] == self.selected
+        button = f'<button type="button" aria-pressed="{"true" if chosen else "false"}">{name}</button>'
+        kind = ' class="s3-selected"' if chosen else ""
+        return f'<tr data-link="{escape(self.links[k])}"{kind}><th scope="row">{button}</th>{numbers}</tr>'
 
 
 @dataclass(frozen=True)

@@ -188,11 +188,15 @@ def dashes(points: npt.NDArray[np.float64], dash: tuple[float, float] | None) ->
 class Stage:
     """Makes nodes for one viewer."""
 
-    def __init__(self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Dragged], None]) -> None:
+    def __init__(
+        self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Dragged], None],
+        pick: Callable[[str], None] = lambda name: None,
+    ) -> None:  # fmt: skip
         self.client = client
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
+        self._pick = pick
 
     def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> None:
         """The light floor grid, and soft light from above."""
@@ -325,6 +329,13 @@ class Stage:
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
         self._listen(ball.handle, name)
         return ball
+
+    def link(self, node: Node, name: str) -> None:
+        """A click on the node selects `name`, as a click on its mark in a picture or its row in a table does."""
+
+        @node.handle.on_click  # type: ignore[untyped-decorator]
+        async def _(_: Any) -> None:
+            self._pick(name)
 
     def _listen(self, handle: Any, name: str) -> None:
         offset = np.zeros(3)

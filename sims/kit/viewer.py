@@ -122,7 +122,7 @@ class Viewer:
         self._readouts: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
-        self.scene = sim.scene(Stage(client, self.palette, self._dragged))
+        self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked))
         client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window as the first drawing
 
     def input(self, control: str, value: Any) -> bool | None:
@@ -255,6 +255,11 @@ class Viewer:
 
         self._listen(handle, lambda v: self._host.drag(typed.handle, v))
         return TypedPlace(typed, handle)
+
+    def _picked(self, name: str) -> None:
+        with suppress(ValueError):
+            if not self.look.watching:
+                self._host.change({"selected": name})
 
     def _dragged(self, name: str, dragged: Dragged) -> None:
         if not self.look.watching:

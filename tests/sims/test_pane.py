@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.pane import Pane, Picture, across, render
+from sims.kit.pane import INSET, Pane, Picture, across, border, render
 from tests.sims.markup import bad_attributes, mistakes, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -25,6 +25,9 @@ def full_picture(title: str = "Left image", words: str = "P", label: str = "Left
     picture.cross((5, 6), "warn")
     picture.dot((7, 8), "held", hollow=True)
     picture.text((9, 10), words)
+    picture.strokes([(0.0, 1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0)], "ink", dash="2 2")
+    picture.point("roof", (50, 60), label, chosen=True, label=words)
+    picture.outside((1e4, 0.0, 1.0), "x", words)
     picture.handle("left_uv", (320.25, 240.5), label, "L")
     return picture
 
@@ -96,7 +99,7 @@ def test_words_are_escaped() -> None:
     html = render([picture.pane(), Pane("x", HOSTILE, "<svg/>")], LIGHT.style())
     assert "<script" not in html
     texts = " ".join(xml(html).itertext())
-    assert texts.count(HOSTILE) == 3
+    assert texts.count(HOSTILE) == 7
     assert str(handle_of(picture).get("aria-label")).startswith(HOSTILE)
 
 
@@ -135,3 +138,65 @@ def test_scale_and_sign_of_a_line_do_not_matter(line: tuple[float, float, float]
         assert (first is None) == (again is None)
         if first is not None and again is not None:
             np.testing.assert_allclose(sorted(map(tuple, first)), sorted(map(tuple, again)), atol=1e-9)
+
+
+# ---- linked points, and what lies outside
+
+
+def test_named_points_carry_their_link_and_stand_where_they_are() -> None:
+    picture = Picture("p", "P")
+    picture.point("roof", (12.5, 30.0), "Roof", chosen=True, label="roof")
+    picture.point("gate", (1.0, 2.0), "Gate")
+    roof, gate = (e for e in xml(picture.pane().svg).iter() if e.get("data-link"))
+    assert (roof.get("data-link"), roof.get("transform")) == ("roof", "translate(12.50 30.00)")
+    assert "s3-selected" in str(roof.get("class"))
+    assert "s3-selected" not in str(gate.get("class"))
+    assert [e.text for e in roof.iter("title")] == ["Roof"]
+
+
+def test_many_strokes_are_one_path() -> None:
+    picture = Picture("p", "P")
+    picture.strokes([(0.0, 1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0)], "ink")
+    picture.strokes([], "x")
+    drawn = [e.get("d") for e in xml(picture.pane().svg).iter("path") if e.get("stroke")]
+    assert drawn == ["M0.00 1.00L2.00 3.00M4.00 5.00L6.00 7.00"]
+
+
+def test_the_frame_takes_in_half_a_pixel_round_the_outermost_centres() -> None:
+    picture = Picture("p", "P")
+    assert picture.shows((-0.5, 479.5))
+    assert not picture.shows((-0.51, 100.0))
+    assert not picture.shows((100.0, 479.51))
+
+
+@given(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.sampled_from([1.0, -1.0, 1e-3, 250.0, 0.0]))
+def test_what_is_outside_is_marked_on_the_way_to_it(x: float, y: float, w: float) -> None:
+    middle = np.array([319.5, 239.5])
+    direction = np.array([x, y]) - middle * w if w else np.array([x, y])
+    direction = direction if w >= 0 else -direction
+    found = border((x, y, w), 640, 480)
+    if not direction.any():
+        assert found is None
+        return
+    assert found is not None
+    place, unit = np.array(found[0]), np.array(found[1])
+    np.testing.assert_allclose(unit, direction / np.linalg.norm(direction), rtol=0, atol=1e-9)
+    offset = np.abs(place - middle)
+    assert np.isclose(offset[0], 320 - INSET) or np.isclose(offset[1], 240 - INSET)
+    assert (offset <= (320 - INSET + 1e-9, 240 - INSET + 1e-9)).all()
+    np.testing.assert_allclose(place - middle, np.linalg.norm(place - middle) * unit, rtol=0, atol=1e-9)
+
+
+def test_a_mark_at_infinity_says_so_and_has_two_heads() -> None:
+    far, near = Picture("p", "P"), Picture("p", "P")
+    far.outside((0.0, -1.0, 0.0), "z", "up", link="up")
+    near.outside((320.0, -900.0, 1.0), "z", "up", link="up")
+    for picture, infinite in ((far, True), (near, False)):
+        mark = next(e for e in xml(picture.pane().svg).iter() if e.get("data-link") == "up")
+        words = "".join(mark.itertext())
+        assert ("∞" in words) == infinite
+        heads = [str(e.get("d")).count("z") for e in mark.iter("path")]
+        assert heads == [2 if infinite else 1]
+    empty = Picture("p", "P")
+    empty.outside((319.5, 239.5, 1.0), "x", "nowhere")
+    assert "nowhere" not in empty.pane().svg

@@ -141,3 +141,13 @@ def test_a_warning_has_an_icon_that_screen_readers_skip(level: str, icon: bool) 
 def test_words_are_escaped(html: str) -> None:
     assert "<script" not in html
     assert HOSTILE in re.sub(r"\s+", " ", " ".join(xml(html).itertext()))
+
+
+def test_rows_of_a_table_are_linked_and_the_selected_one_says_so() -> None:
+    table = Table("Points", [("point", "u"), ("Roof", "1.0"), ("Gate & co", "2.0")], ("roof", "gate"), "gate")
+    rows = [e for e in xml(table.html()).iter("tr") if e.get("data-link")]
+    assert [e.get("data-link") for e in rows] == ["roof", "gate"]
+    buttons = [next(e.iter("button")) for e in rows]
+    assert [(b.text, b.get("aria-pressed")) for b in buttons] == [("Roof", "false"), ("Gate & co", "true")]
+    assert [e.get("class") for e in rows] == [None, "s3-selected"]
+    assert not mistakes(table.html())
