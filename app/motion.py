@@ -39,6 +39,7 @@ async def play(steps: Iterator[Step], now: Callable[[], Params], *, reduced: boo
             continue
         begin = loop.time()
         while (fraction := (loop.time() - begin) / step.seconds) < 1.0:
-            yield {k: between(getattr(start, k), v, eased(fraction)) for k, v in step.changes.items()}
+            done = fraction if step.even else eased(fraction)
+            yield {k: between(getattr(start, k), v, done) for k, v in step.changes.items()}
             await asyncio.sleep(FRAME)
         yield step.changes

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import Array, components, if_positive, norm, stack
-from .errors import GeometryError, as_array, as_number
+from .errors import GeometryError, as_array, as_finite_array, as_number
 from .rotations import as_rotation
 
 # Columns are the camera's x, y and z in the world, for a level camera that looks along the world's +Y.
@@ -151,6 +151,33 @@ def _checked_pose(T: Array) -> Array:
         raise GeometryError("T_camera_world", T.tolist(), "one rigid transform (4, 4) with last row (0, 0, 0, 1)")
     as_rotation("T_camera_world", T[:3, :3])
     return T
+
+
+def pan_tilt_roll(pan: float, tilt: float, roll: float) -> Array:
+    """Return R_world_camera (3, 3) = Rz(pan) C Rx(tilt) Rz(roll) for angles in radians, with C = R_WORLD_LEVEL.
+
+    At zero the camera looks along the world's +Y. Pan turns about the world's Z, tilt about the camera's x (positive
+    looks up), roll about the optical axis.
+    """
+    c, s = math.cos(as_number("pan", pan)), math.sin(pan)
+    p, q = math.cos(as_number("tilt", tilt)), math.sin(tilt)
+    g, h = math.cos(as_number("roll", roll)), math.sin(roll)
+    # Columns of Rz(pan) C Rx(tilt): right, down and forward before the roll.
+    right, down, forward = (c, s, 0.0), (-s * q, c * q, -p), (-s * p, c * p, q)
+    rows = [(g * a + h * b, g * b - h * a, f) for a, b, f in zip(right, down, forward, strict=True)]
+    return np.array(rows)
+
+
+def aim(center: npt.ArrayLike, target: npt.ArrayLike) -> tuple[float | None, float]:
+    """Return the pan and the tilt, in radians, that turn a camera at a place (3,) towards another (3,).
+
+    Straight up or down any pan does: None. Raises GeometryError if the places coincide.
+    """
+    x, y, z = (as_finite_array("target", target, 3) - as_finite_array("center", center, 3)).tolist()
+    flat = math.hypot(x, y)
+    if not flat and not z:
+        raise GeometryError("target", [x, y, z], "a place other than the camera's")
+    return (math.atan2(-x, y) if flat > 1e-12 * abs(z) else None), math.atan2(z, flat)
 
 
 def parallel_rig(

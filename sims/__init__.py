@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from sims.camera import SIM as CAMERA
 from sims.coordinate_frames import SIM as COORDINATE_FRAMES
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.gimbal_lock import SIM as GIMBAL_LOCK
@@ -11,7 +12,7 @@ from sims.kit.sim import Sim
 from sims.transform_chain import SIM as TRANSFORM_CHAIN
 from sims.triangulation import SIM as TRIANGULATION
 
-SIMS: tuple[Sim[Any, Any], ...] = (COORDINATE_FRAMES, EULER_ANGLES, GIMBAL_LOCK, TRANSFORM_CHAIN, TRIANGULATION)
+SIMS: tuple[Sim[Any, Any], ...] = (COORDINATE_FRAMES, EULER_ANGLES, GIMBAL_LOCK, TRANSFORM_CHAIN, CAMERA, TRIANGULATION)
 
 
 def by_slug(slug: str) -> Sim[Any, Any] | None:

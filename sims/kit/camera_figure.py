@@ -29,14 +29,19 @@ class CameraFigure:
         ]
         if "mark" in parts:
             self._solids.append(stage.mesh(f"{name}/mark", parts["mark"], "page"))
-        self._edges = stage.lines(f"{name}/frustum", np.zeros((9, 3)), role, width=1.5)
+        self.edges = stage.lines(f"{name}/frustum", np.zeros((9, 3)), role, width=1.5)
         flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
-        self._picture = stage.mesh(f"{name}/picture", flat, role, opacity=0.12, side="double", flat=True)
+        self.picture = stage.mesh(f"{name}/picture", flat, role, opacity=0.12, side="double", flat=True)
         self._letter = stage.label(f"{name}/letter", letter)
         self._corners: npt.NDArray[np.float64] | None = None
 
-    def draw(self, corners: npt.NDArray[np.float64], size: float = 1.0) -> None:
-        """Show the picture's corners (4, 3), round it, in the camera's axes; `size` scales the body."""
+    def draw(
+        self, corners: npt.NDArray[np.float64], size: float = 1.0, back: npt.NDArray[np.float64] | None = None
+    ) -> None:
+        """Show the picture's corners (4, 3), round it, in the camera's axes; `size` scales the body.
+
+        The frustum begins in the centre, or, for a camera whose lines of sight are parallel, in corners at its `back`.
+        """
         for solid in self._solids:
             solid.scale(size)
         self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
@@ -45,5 +50,7 @@ class CameraFigure:
             edges = np.zeros((8, 2, 3))
             edges[:4, 1] = edges[4:, 0] = corners
             edges[4:, 1] = np.roll(corners, -1, axis=0)
-            self._edges.pieces(edges)
-            self._picture.vertices(corners)
+            if back is not None:
+                edges[:4, 0] = back
+            self.edges.pieces(edges)
+            self.picture.vertices(corners)

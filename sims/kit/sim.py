@@ -34,6 +34,8 @@ class Step:
 
     changes: Mapping[str, Any]
     seconds: float
+    even: bool = False
+    """At one speed: for the legs of a way that isn't straight, which is eased as a whole."""
 
 
 @dataclass(frozen=True)

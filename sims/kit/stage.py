@@ -126,6 +126,10 @@ class Strokes(Node):
             self._shown = pieces
             set_property(self.handle, "points", np.array(pieces, np.float32))
 
+    def move(self, pieces: npt.NDArray[np.float64]) -> None:
+        """Two ends for each piece (n, 2, 3), which are known to differ from those before."""
+        set_property(self.handle, "points", pieces.astype(np.float32))
+
 
 class Label(Node):
     """Words at a place; constant size on the screen."""

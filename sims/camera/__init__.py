@@ -1,0 +1,60 @@
+"""camera: K, [R | t] and P, and what projection loses.
+
+One camera, drawn as it is, looks at a street; its picture stands in front of it and beside the scene. Every point with
+a name is followed from the world to its pixel.
+"""
+
+from __future__ import annotations
+
+from sims.camera import hands
+from sims.camera.model import CameraParams, CameraSolution
+from sims.camera.picture import panes
+from sims.camera.scene import CameraScene
+from sims.camera.solve import solve
+from sims.camera.words import describe, readouts
+from sims.kit.sim import Action, Objective, Sim, View
+
+__all__ = ["SIM", "CameraParams", "CameraSolution", "solve"]
+
+SIM = Sim(
+    slug="camera",
+    title="Camera",
+    summary="Move, turn and zoom a camera, and follow points from the world through K [R | t] to their pixels.",
+    concepts=("Camera model", "Intrinsics and extrinsics", "Perspective"),
+    objectives=(
+        Objective("Compute the pixel of a point from K, R and t, step by step", "Apply"),
+        Objective("Tell what each of fx, fy, cx, cy, skew, position and angles does to the picture", "Understand"),
+        Objective("Say what projection loses, and when a picture without perspective comes near", "Analyze"),
+    ),
+    params=CameraParams,
+    solve=solve,
+    scene=CameraScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((6.4, -8.6, 5.2), (-0.3, -0.6, 0.5), 4.6),
+    panes=panes,
+    actions=(
+        Action(
+            "dolly-zoom", "Dolly zoom", "Move and zoom together, so that the house stays as tall in the picture",
+            hands.dolly_zoom,
+        ),
+        Action("look", "Look at the subject", "Turn the camera to the middle of the house", hands.look),
+    ),
+    handles={"/eye": hands.hold_eye, "/look": hands.hold_look, "principal": hands.hold_principal},
+    states={
+        "orthographic": {"projection": "orthographic"},
+        "weak perspective": {"projection": "weak", "selected": "far-post"},
+        "off centre and skewed": {"cx": 120, "cy": 400, "skew": 150, "fy": 900, "selected": "roof-near"},
+        "behind": {"selected": "back-post"},
+        "outside": {"selected": "far-post", "pan": 40},
+        "looking back": {"pan": 180},
+        "no scale": {"projection": "orthographic", "pan": 180},
+        "straight down": {"position": (-1.0, 1.0, 8.0), "tilt": -90, "selected": "cube-left"},
+        "in the house": {"position": (-1.43, 2.37, 0.9), "fx": 300, "fy": 300, "selected": "roof-far"},
+        "in the camera's plane": {"position": (0.0, -0.6, 1.2), "selected": "cube-left"},
+        "centre on a point": {"position": (-1.0, 1.0, 0.0), "pan": 90},
+        "rolled": {"roll": 30, "tilt": 15},
+        "nothing in front": {"position": (0.0, 20.0, 1.2)},
+        "seen along the street": {"projection": "orthographic", "pan": -15},
+    },
+)  # fmt: skip

@@ -1,0 +1,121 @@
+"""The scene: the world that stands still, and the camera with its frustum, its picture and its lines of sight."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Array
+from sims.camera.model import CameraParams, CameraSolution, Frustum
+from sims.camera.world import BY_ROLE, PLACES, ROLES, TITLES, WIRES, street
+from sims.kit.camera_figure import CameraFigure
+from sims.kit.stage import Label, Stage
+
+WIDTHS = {"ink": 2.0, "x": 2.0, "y": 2.5, "z": 3.0}
+SPOT, GRIP = 0.055, 0.09
+BODY = 1.6
+"""Times its usual size."""
+NAMED = {"house": street(-1.9, 3.5, 2.05), "near post": (0.0, 0.0, 0.2), "far post": (0.0, 0.0, 0.2)}
+POST_OF = {"near post": "near-post", "far post": "far-post"}
+SIGHTS = ("x", "y", "z")
+
+
+class CameraScene:
+    """Everything in the street keeps its place; all that belongs to the camera hangs on one node."""
+
+    def __init__(self, stage: Stage) -> None:
+        stage.ground(size=20.0, cell=0.5)
+        stage.axes("/world", 0.8, radius=0.008)
+        for role, numbers in BY_ROLE.items():
+            lines = stage.lines(f"/street/{role}", np.zeros((2, 3)), role, width=WIDTHS[role])
+            lines.pieces(WIRES[numbers])
+        for name, place in PLACES.items():
+            spot = stage.ball(f"/points/{name}", SPOT, "ink")
+            spot.pose(position=place)
+            stage.link(spot, name)
+        self.selected = stage.ball("/selected", 1.5 * SPOT, "held")
+        self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, 0.22))
+        self.labels = [self._label(stage, name) for name in NAMED]
+        self.camera = Eye(stage)
+        self.stand = stage.lines("/stand", np.zeros((2, 3)), "ghost", width=1.2)
+        self.eye = stage.grip("/eye", GRIP, halo=2.6)
+        self.look = stage.grip("/look", 0.7 * GRIP)
+
+    @staticmethod
+    def _label(stage: Stage, name: str) -> Label:
+        x, y, z = PLACES[POST_OF[name]] if name in POST_OF else (0.0, 0.0, 0.0)
+        dx, dy, dz = NAMED[name]
+        return stage.label(f"/names/{name.replace(' ', '_')}", name, (x + dx, y + dy, z + dz))
+
+    def draw(self, p: CameraParams, s: CameraSolution) -> None:
+        x, y, _ = p.position
+        self.camera.draw(p, s)
+        self.stand.stroke((x, y, 0.0), p.position)
+        self.eye.pose(position=p.position)
+        self.look.pose(position=s.look.tolist())
+        self.selected.pose(position=PLACES[p.selected])
+        self.selected_label.text(TITLES[p.selected].lower())
+        for name, label in zip(NAMED, self.labels, strict=True):
+            label.show(p.show_labels and not p.selected.startswith(POST_OF.get(name, "-")))
+
+
+class Eye:
+    """The camera: body, axes, frustum, and its picture with the lines of sight that make it."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.figure = CameraFigure(stage, "/camera", "ink", "C")
+        stage.axes("/camera/axes", 0.7, radius=0.016, letters=("x", "y", "z"))
+        self.axis = stage.lines("/camera/axis", np.zeros((2, 3)), "ghost", width=1.5)
+        self.far = stage.lines("/camera/far", np.zeros((9, 3)), "ghost", width=1.0)
+        self.wires = stage.strokes("/camera/wires", ROLES, width=1.5)
+        self.dots = stage.cloud("/camera/dots", np.zeros((0, 3)), "ink", size=0.022)
+        self.rays = stage.lines("/camera/rays", np.zeros((2, 3)), "ghost", width=1.0)
+        self.dot = stage.ball("/camera/dot", 0.024, "held")
+        self.ray = stage.lines("/camera/ray", np.zeros((2, 3)), "held", width=3.5)
+        self.meets = stage.strokes("/camera/vanishing", SIGHTS, width=2.5)
+        self.label = stage.label("/camera/label", "picture", anchor="bottom-left")
+        self._shown: Frustum | None = None
+
+    def draw(self, p: CameraParams, s: CameraSolution) -> None:
+        self.figure.node.pose(s.orientation.tolist(), p.position)
+        there, f = s.frustum is not None, s.frustum
+        for node in (self.figure.picture, self.wires, self.dots):
+            node.show(there)
+        self.figure.edges.show(there and p.show_frustum)
+        self.far.show(there and p.show_frustum)
+        self.rays.show(there and p.show_rays)
+        self.meets.show(there and p.show_vanishing)
+        self.label.show(there and p.show_labels)
+        self.dot.show(f is not None and f.chosen is not None)
+        self.ray.show(f is not None and f.chosen is not None)
+        if f is not None:
+            self._frustum(f, s)
+
+    def _frustum(self, f: Frustum, s: CameraSolution) -> None:
+        self.figure.draw(f.corners, BODY, f.back)
+        self.axis.stroke((0.0, 0.0, 0.0), (0.0, 0.0, f.depth + 0.5))
+        self.far.pieces(_box(f.corners, f.far))
+        self.wires.move(_all_wires(f, s.shown))
+        self.dots.points(f.dots)
+        self.rays.pieces(f.rays)
+        self.meets.move(np.stack([np.zeros((3, 3)), 1.5 * f.meet], axis=1))
+        self.label.pose(position=f.corners[0].tolist())
+        if f.chosen is not None:
+            start, dot, point = f.chosen.tolist()
+            self.dot.pose(position=dot)
+            self.ray.stroke(start, point)
+
+
+def _box(near: Array, far: Array) -> Array:
+    """Edges (8, 2, 3) from the picture's corners to the far ones, and round those."""
+    edges = np.empty((8, 2, 3))
+    edges[:4, 0], edges[:4, 1] = near, far
+    edges[4:, 0], edges[4:, 1] = far, np.roll(far, -1, axis=0)
+    return edges
+
+
+def _all_wires(f: Frustum, shown: Array) -> Array:
+    """A piece for each edge of the world; those that aren't in the picture have no length."""
+    pieces = np.empty((len(ROLES), 2, 3))
+    pieces[:] = f.corners[0]
+    pieces[shown] = f.wires
+    return pieces

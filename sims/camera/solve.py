@@ -1,0 +1,177 @@
+"""The mathematics of a state: everything that is drawn or read follows from one camera."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from geometry import quaternion
+from geometry.affine_camera import AffineCamera
+from geometry.arrays import Array
+from geometry.camera import Camera, pan_tilt_roll
+from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
+from sims.camera.model import HEIGHT, WIDTH, CameraParams, CameraSolution, Frustum, Pixel
+from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES
+
+PICTURE_WIDTH = 0.9
+"""Metres that the picture is wide where it stands in the scene; how far in front follows from the focal length."""
+NEAREST = 1e-6
+"""Metres of depth from which on the picture shows edges."""
+LEAST_DEPTH = 0.05
+"""Metres of depth below which a picture without perspective has no sensible scale."""
+BEYOND = 0.5
+"""Metres by which the grip that turns the camera stands farther away than the picture."""
+WAYS: Array = np.array([way for _, way in DIRECTIONS.values()])
+AIMS: Array = np.array([MIDDLE, *SUBJECT])
+CORNERS: Array = np.array([(-0.5, -0.5), (WIDTH - 0.5, -0.5), (WIDTH - 0.5, HEIGHT - 0.5), (-0.5, HEIGHT - 0.5)])
+Eye = Camera | AffineCamera
+
+
+def camera_of(p: CameraParams) -> Camera:
+    """The camera of a state, with perspective."""
+    R = pan_tilt_roll(math.radians(p.pan), math.radians(p.tilt), math.radians(p.roll))
+    T = np.eye(4)
+    T[:3, :3] = R.T
+    T[:3, 3] = -np.array(p.position).dot(R)
+    return Camera.from_intrinsics(p.fx, p.fy, p.cx, p.cy, p.skew, T_camera_world=T)
+
+
+def solve(p: CameraParams) -> CameraSolution:
+    """All the mathematics of a state."""
+    camera = camera_of(p)
+    in_camera, aims = camera.to_camera(POINTS), camera.to_camera(AIMS)
+    mean, depth = float(in_camera[:, 2].mean()), aims.item(0, 2)
+    eye, scale = _eye(p, camera, {"weak": mean, "orthographic": depth}.get(p.projection))
+    pixels = np.full((len(POINTS), 2), np.nan) if eye is None else eye.project(POINTS)[0]
+    points = _points(in_camera, pixels)
+    vanishing = () if eye is None else _vanishing(eye.P)
+    wires, shown = (np.empty((0, 2, 2)), np.empty(0, int)) if eye is None else _wires(eye, camera)
+    finite = eye is camera
+    picture_depth = PICTURE_WIDTH * p.fx / WIDTH
+    return CameraSolution(
+        K=camera.K,
+        R=camera.R,
+        t=camera.t,
+        P=None if eye is None else eye.P,
+        center=np.array(p.position),
+        orientation=quaternion.from_matrix(camera.R.T),
+        **dict(zip(("fov_x", "fov_y"), map(math.degrees, camera.fov(WIDTH, HEIGHT)), strict=True)),
+        points=points,
+        mean_depth=mean,
+        scale_depth=scale,
+        subject=_subject(eye, depth),
+        decomposed=_decomposed(camera) if finite else None,
+        vanishing=vanishing,
+        wires=wires,
+        shown=shown,
+        frustum=None
+        if eye is None
+        else _frustum(p, camera, scale, picture_depth, depth, points, in_camera, wires, vanishing),
+        look=np.array(p.position) + (picture_depth + BEYOND) * camera.R[2],
+    )
+
+
+def _eye(p: CameraParams, camera: Camera, scale: float | None) -> tuple[Eye | None, float | None]:
+    """What makes the picture, and the one depth by which it divides; neither where that depth makes no sense."""
+    if p.projection == "perspective":
+        return camera, None
+    if scale is None or scale < LEAST_DEPTH:
+        return None, None
+    return AffineCamera(camera, scale), scale
+
+
+def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
+    found = []
+    for name, axes, (u, v) in zip(NAMES, in_camera.tolist(), pixels.tolist(), strict=True):
+        pixel = (u, v) if u == u else None
+        inside = pixel is not None and -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
+        found.append(
+            {"name": name, "world": PLACES[name], "camera": axes, "pixel": pixel, "depth": axes[2], "in_image": inside}
+        )
+    return tuple(found)
+
+
+def _subject(eye: Eye | None, depth: float) -> dict[str, Any]:
+    subject = {"world": MIDDLE, "depth": depth, "pixel": None, "height": None}
+    if eye is None:
+        return subject
+    (middle, ground, ridge), _ = eye.project(AIMS)
+    u, v = middle.tolist()
+    across, down = (ridge - ground).tolist()
+    height = math.hypot(across, down)
+    return {
+        **subject,
+        "pixel": (u, v) if math.isfinite(u) else None,
+        "height": height if math.isfinite(height) else None,
+    }
+
+
+def _decomposed(camera: Camera) -> dict[str, Array]:
+    parts = decompose(camera.P)
+    return {"K": parts.K, "R": parts.R, "center": parts.center}
+
+
+def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
+    found = []
+    homogeneous, pixels = vanishing_points(P, WAYS)
+    for (name, (role, _)), place, (u, v) in zip(DIRECTIONS.items(), homogeneous.tolist(), pixels.tolist(), strict=True):
+        exists = place[0] == place[0]
+        inside = u == u and -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
+        found.append(
+            {
+                "name": name, "role": role, "homogeneous": place if exists else None,
+                "pixel": (u, v) if u == u else None, "in_image": inside,
+            }
+        )  # fmt: skip
+    return tuple(found)
+
+
+def _wires(eye: Eye, camera: Camera) -> tuple[Array, Array]:
+    """Edges in the picture, in pixels, and their numbers in the world."""
+    plane = np.append(camera.R[2], camera.t[2] - NEAREST)
+    parts, exists = clip_segments(WIRES, np.vstack([frame_planes(eye.P, WIDTH, HEIGHT), plane]))
+    return eye.project(parts[exists])[0], np.flatnonzero(exists)
+
+
+def _frustum(
+    p: CameraParams, camera: Camera, scale: float | None, depth: float, subject: float,
+    points: Sequence[Mapping[str, Any]], in_camera: Array, wires: Array, vanishing: Sequence[Mapping[str, Any]],
+) -> Frustum:  # fmt: skip
+    """The picture stands at `depth`; there a pixel is as far from the axis as its line of sight is."""
+    seen = [k for k, point in enumerate(points) if point["in_image"]]
+    chosen = points[NAMES.index(p.selected)]
+    meets: list[Pixel] = [v["pixel"] if v["in_image"] else (math.nan, math.nan) for v in vanishing]
+    pixels = [points[k]["pixel"] for k in seen]
+    flat = np.concatenate([CORNERS, np.reshape(pixels, (-1, 2)), meets, [chosen["pixel"] or (math.nan, math.nan)]])
+    placed = _placed(camera, np.concatenate([flat, wires.reshape(-1, 2)]), scale or depth, depth)
+    corners, dots, rest = placed[:4], placed[4 : 4 + len(seen)], placed[4 + len(seen) :]
+    targets = in_camera[seen]
+    starts = np.zeros_like(targets) if scale is None else targets * (1.0, 1.0, 0.0)
+    far = max(scale or subject, depth)
+    return Frustum(
+        depth=depth,
+        corners=corners,
+        back=np.zeros((4, 3)) if scale is None else corners * (1.0, 1.0, 0.0),
+        far=corners * (far / depth if scale is None else (1.0, 1.0, far / depth)),
+        wires=rest[4:].reshape(-1, 2, 3),
+        dots=dots,
+        rays=np.stack([starts, targets], axis=1),
+        chosen=_sight(rest[3], np.array(chosen["camera"]), scale) if chosen["pixel"] else None,
+        meet=np.nan_to_num(rest[:3]),
+    )
+
+
+def _placed(camera: Camera, pixels: Array, unit: float, depth: float) -> Array:
+    """Pixels (n, 2) on the picture as it stands in the scene (n, 3)."""
+    placed = np.empty((len(pixels), 3))
+    placed[:, :2] = unit * camera.normalized(pixels)
+    placed[:, 2] = depth
+    return placed
+
+
+def _sight(dot: Array, point: Array, scale: float | None) -> Array:
+    start = np.zeros(3) if scale is None else point * (1.0, 1.0, 0.0)
+    return np.stack([start, dot, point])
