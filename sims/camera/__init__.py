@@ -31,7 +31,7 @@ SIM = Sim(
     scene=CameraScene,
     readouts=readouts,
     describe=describe,
-    view=View((6.4, -8.6, 5.2), (-0.3, -0.6, 0.5), 4.6),
+    view=View((-4.28, -7.87, 4.4), (0.05, -0.37, -0.6), 3.3),
     panes=panes,
     actions=(
         Action(
@@ -44,13 +44,13 @@ SIM = Sim(
     states={
         "orthographic": {"projection": "orthographic"},
         "weak perspective": {"projection": "weak", "selected": "far-post"},
-        "off centre and skewed": {"cx": 120, "cy": 400, "skew": 150, "fy": 900, "selected": "roof-near"},
+        "off centre and skewed": {"cx": 120, "cy": 400, "skew": 150, "fy": 900, "selected": "near-post"},
         "behind": {"selected": "back-post"},
         "outside": {"selected": "far-post", "pan": 40},
         "looking back": {"pan": 180},
         "no scale": {"projection": "orthographic", "pan": 180},
         "straight down": {"position": (-1.0, 1.0, 8.0), "tilt": -90, "selected": "cube-left"},
-        "in the house": {"position": (-1.43, 2.37, 0.9), "fx": 300, "fy": 300, "selected": "roof-far"},
+        "in the house": {"position": (-1.47, 1.6, 0.9), "fx": 300, "fy": 300, "selected": "roof-far"},
         "in the camera's plane": {"position": (0.0, -0.6, 1.2), "selected": "cube-left"},
         "centre on a point": {"position": (-1.0, 1.0, 0.0), "pan": 90},
         "rolled": {"roll": 30, "tilt": 15},

@@ -61,7 +61,7 @@ class CameraParams(Params):
         description="About the optical axis; positive turns the camera clockwise",
     )  # fmt: skip
     selected: Name = choice(
-        "near-post", title="Point", description="The point that is worked through; click one to choose it",
+        "roof-near", title="Point", description="The point that is worked through; click one to choose it",
         labels=TITLES,
     )  # fmt: skip
     show_rays: bool = switch(
@@ -130,8 +130,8 @@ class Frustum:
     """Of the picture (4, 3): top left, top right, bottom right, bottom left."""
     back: Array
     """Where the lines of sight through them come from (4, 3): the centre, or the camera's plane."""
-    far: Array
-    """Where they are drawn to (4, 3): as far as the subject, or where sizes are true."""
+    far: Array | None
+    """Without perspective: where sizes are true (4, 3)."""
     wires: Array
     """Edges (n, 2, 3) of the picture."""
     dots: Array

@@ -6,16 +6,16 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.camera.model import CameraParams, CameraSolution, Frustum
-from sims.camera.world import BY_ROLE, PLACES, ROLES, TITLES, WIRES, street
+from sims.camera.world import BY_ROLE, PLACES, ROLES, TITLES, WIRES, Place
 from sims.kit.camera_figure import CameraFigure
-from sims.kit.stage import Label, Stage
+from sims.kit.stage import Stage
 
 WIDTHS = {"ink": 2.0, "x": 2.0, "y": 2.5, "z": 3.0}
 SPOT, GRIP = 0.055, 0.09
 BODY = 1.6
 """Times its usual size."""
-NAMED = {"house": street(-1.9, 3.5, 2.05), "near post": (0.0, 0.0, 0.2), "far post": (0.0, 0.0, 0.2)}
-POST_OF = {"near post": "near-post", "far post": "far-post"}
+ABOVE = 0.2
+NAMED = {"house": "roof-near", "near post": "near-post", "far post": "far-post"}
 SIGHTS = ("x", "y", "z")
 
 
@@ -24,7 +24,7 @@ class CameraScene:
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=20.0, cell=0.5)
-        stage.axes("/world", 0.8, radius=0.008)
+        stage.axes("/world", 0.6, radius=0.008)
         for role, numbers in BY_ROLE.items():
             lines = stage.lines(f"/street/{role}", np.zeros((2, 3)), role, width=WIDTHS[role])
             lines.pieces(WIRES[numbers])
@@ -33,18 +33,14 @@ class CameraScene:
             spot.pose(position=place)
             stage.link(spot, name)
         self.selected = stage.ball("/selected", 1.5 * SPOT, "held")
-        self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, 0.22))
-        self.labels = [self._label(stage, name) for name in NAMED]
+        self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, ABOVE))
+        self.labels = {
+            point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
+        }
         self.camera = Eye(stage)
         self.stand = stage.lines("/stand", np.zeros((2, 3)), "ghost", width=1.2)
         self.eye = stage.grip("/eye", GRIP, halo=2.6)
         self.look = stage.grip("/look", 0.7 * GRIP)
-
-    @staticmethod
-    def _label(stage: Stage, name: str) -> Label:
-        x, y, z = PLACES[POST_OF[name]] if name in POST_OF else (0.0, 0.0, 0.0)
-        dx, dy, dz = NAMED[name]
-        return stage.label(f"/names/{name.replace(' ', '_')}", name, (x + dx, y + dy, z + dz))
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         x, y, _ = p.position
@@ -54,8 +50,13 @@ class CameraScene:
         self.look.pose(position=s.look.tolist())
         self.selected.pose(position=PLACES[p.selected])
         self.selected_label.text(TITLES[p.selected].lower())
-        for name, label in zip(NAMED, self.labels, strict=True):
-            label.show(p.show_labels and not p.selected.startswith(POST_OF.get(name, "-")))
+        for point, label in self.labels.items():
+            label.show(p.show_labels and p.selected != point)
+
+
+def above(place: Place) -> Place:
+    """Where a label stands."""
+    return place[0], place[1], place[2] + ABOVE
 
 
 class Eye:
@@ -81,7 +82,7 @@ class Eye:
         for node in (self.figure.picture, self.wires, self.dots):
             node.show(there)
         self.figure.edges.show(there and p.show_frustum)
-        self.far.show(there and p.show_frustum)
+        self.far.show(f is not None and f.far is not None and p.show_frustum)
         self.rays.show(there and p.show_rays)
         self.meets.show(there and p.show_vanishing)
         self.label.show(there and p.show_labels)
@@ -93,7 +94,8 @@ class Eye:
     def _frustum(self, f: Frustum, s: CameraSolution) -> None:
         self.figure.draw(f.corners, BODY, f.back)
         self.axis.stroke((0.0, 0.0, 0.0), (0.0, 0.0, f.depth + 0.5))
-        self.far.pieces(_box(f.corners, f.far))
+        if f.far is not None:
+            self.far.pieces(_box(f.corners, f.far))
         self.wires.move(_all_wires(f, s.shown))
         self.dots.points(f.dots)
         self.rays.pieces(f.rays)

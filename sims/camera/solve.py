@@ -16,7 +16,7 @@ from geometry.projection import clip_segments, decompose, frame_planes, vanishin
 from sims.camera.model import HEIGHT, WIDTH, CameraParams, CameraSolution, Frustum, Pixel
 from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES
 
-PICTURE_WIDTH = 0.9
+PICTURE_WIDTH = 1.2
 """Metres that the picture is wide where it stands in the scene; how far in front follows from the focal length."""
 NEAREST = 1e-6
 """Metres of depth from which on the picture shows edges."""
@@ -67,9 +67,7 @@ def solve(p: CameraParams) -> CameraSolution:
         vanishing=vanishing,
         wires=wires,
         shown=shown,
-        frustum=None
-        if eye is None
-        else _frustum(p, camera, scale, picture_depth, depth, points, in_camera, wires, vanishing),
+        frustum=None if eye is None else _frustum(p, camera, scale, picture_depth, points, in_camera, wires, vanishing),
         look=np.array(p.position) + (picture_depth + BEYOND) * camera.R[2],
     )
 
@@ -137,7 +135,7 @@ def _wires(eye: Eye, camera: Camera) -> tuple[Array, Array]:
 
 
 def _frustum(
-    p: CameraParams, camera: Camera, scale: float | None, depth: float, subject: float,
+    p: CameraParams, camera: Camera, scale: float | None, depth: float,
     points: Sequence[Mapping[str, Any]], in_camera: Array, wires: Array, vanishing: Sequence[Mapping[str, Any]],
 ) -> Frustum:  # fmt: skip
     """The picture stands at `depth`; there a pixel is as far from the axis as its line of sight is."""
@@ -150,12 +148,11 @@ def _frustum(
     corners, dots, rest = placed[:4], placed[4 : 4 + len(seen)], placed[4 + len(seen) :]
     targets = in_camera[seen]
     starts = np.zeros_like(targets) if scale is None else targets * (1.0, 1.0, 0.0)
-    far = max(scale or subject, depth)
     return Frustum(
         depth=depth,
         corners=corners,
         back=np.zeros((4, 3)) if scale is None else corners * (1.0, 1.0, 0.0),
-        far=corners * (far / depth if scale is None else (1.0, 1.0, far / depth)),
+        far=None if scale is None else corners * (1.0, 1.0, scale / depth),
         wires=rest[4:].reshape(-1, 2, 3),
         dots=dots,
         rays=np.stack([starts, targets], axis=1),

@@ -48,7 +48,7 @@ def _status(p: CameraParams, s: CameraSolution) -> Iterator[Note]:
         yield Note(f"Every point is divided by one depth, {quantity(s.scale_depth, 'm', 2)}: {BY[p.projection]}.")
     hidden = sum(point["depth"] <= 0.0 for point in s.points)
     if hidden == len(s.points):
-        yield Note("All points are behind the camera: none has a pixel.", "warn")
+        yield Note("All points are behind the camera: there are no pixels.", "warn")
     elif hidden:
         ending = "point is behind the camera and has" if hidden == 1 else "points are behind the camera and have"
         yield Note(f"{hidden} {ending} no pixel.")

@@ -30,11 +30,11 @@ ACROSS = (math.cos(TURN), -math.sin(TURN), 0.0)
 ALONG = (math.sin(TURN), math.cos(TURN), 0.0)
 UP = (0.0, 0.0, 1.0)
 DIRECTIONS: dict[str, tuple[Role, Place]] = {"across": ("x", ACROSS), "along": ("y", ALONG), "up": ("z", UP)}
-LEFT, RIGHT, FRONT, BACK, WALL, ROOF = -2.6, -1.2, 2.4, 4.6, 1.15, 1.75
+LEFT, RIGHT, FRONT, BACK, WALL, ROOF = -2.4, -1.05, 1.8, 3.6, 1.1, 1.7
 """The house: metres across, along and up in the street."""
-GAUGE, RAILS = 0.25, (-4.0, 8.0)
-POSTS, BESIDE, TALL = (-3.4, 1.0, 2.7, 4.4, 6.1), 0.75, 1.0
-CUBES = {"left": (-1.5, -0.6, 0.5, 0.5), "right": (1.45, 0.1, 0.6, 0.3), "far": (2.9, 3.0, 0.8, 0.9)}
+GAUGE, RAILS = 0.25, (-3.8, 5.8)
+POSTS, BESIDE, TALL = (-3.3, 0.9, 2.1, 3.3, 4.5), 0.7, 1.0
+CUBES = {"left": (-1.5, -0.6, 0.5, 0.5), "right": (1.4, 0.0, 0.55, 0.3), "far": (2.2, 2.2, 0.7, 0.9)}
 """Middle x and y in the world, size, turn in radians."""
 
 
@@ -106,7 +106,7 @@ def _pieces() -> Iterator[tuple[Role, Piece]]:
     for side in (-GAUGE, GAUGE):
         yield "y", (street(side, RAILS[0], 0.0), street(side, RAILS[1], 0.0))
     for k in range(17):
-        along = RAILS[0] + 0.75 * k
+        along = RAILS[0] + 0.6 * k
         yield "x", (street(-1.6 * GAUGE, along, 0.0), street(1.6 * GAUGE, along, 0.0))
     yield from (("z", (street(BESIDE, along, 0.0), street(BESIDE, along, TALL))) for along in POSTS)
     for foot, top in _CUBES.values():

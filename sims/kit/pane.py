@@ -129,9 +129,9 @@ class Picture:
         far = point[2] == 0.0
         head = "M-11 -9L5 0L-11 9z" + ("M-23 -9L-7 0L-23 9z" if far else "")
         anchor = "end" if dx > 0.4 else "start" if dx < -0.4 else "middle"
-        away = 44.0 if far else 32.0
+        down = 9.0 - (44.0 if far else 32.0) * dy if anchor == "middle" else -16.0 if y > 60.0 else 36.0
         text = (
-            f'<text x="{-away * dx:.1f}" y="{9 - away * dy:.1f}" text-anchor="{anchor}" class="s3-halo"'
+            f'<text x="0" y="{down:.1f}" text-anchor="{anchor}" class="s3-halo"'
             f' fill="var(--{role})">{escape(words)}{" ∞" if far else ""}</text>'
             if words
             else ""

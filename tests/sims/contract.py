@@ -56,6 +56,23 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
     "gimbal-lock": (
         "yaw=-30&pitch=90&roll=45.5",
         {"yaw": -30.0, "pitch": 90.0, "roll": 45.5},
+    "camera": (
+        "fx=800&fy=700&cx=300&cy=200&skew=10&position=1,-5.5,2&pan=20&tilt=-10&roll=5&projection=weak"
+        "&show_rays=0&show_frustum=0",
+        {
+            "fx": 800.0,
+            "fy": 700.0,
+            "cx": 300.0,
+            "cy": 200.0,
+            "skew": 10.0,
+            "position": [1.0, -5.5, 2.0],
+            "pan": 20.0,
+            "tilt": -10.0,
+            "roll": 5.0,
+            "projection": "weak",
+            "show_rays": False,
+            "show_frustum": False,
+        },
     ),
     "transform-chain": (
         "show=composed&angles=30,40,-30.5,90&lengths=1,0.8,0.5,0&axes=zyyx&swap=2",
