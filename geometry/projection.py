@@ -88,8 +88,8 @@ def vanishing_points(P: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array
 def frame_planes(P: npt.ArrayLike, width: float, height: float) -> Array:
     """Return the half-spaces (4, 4) of the points that P (3, 4) maps into a picture of a size in pixels.
 
-    In the order left, top, right, bottom. A row (a, b, c, d) holds where a x + b y + c z + d ≥ 0; all four
-    together also hold behind a perspective camera for nothing but its centre. Edges are at −½ and width − ½.
+    In the order left, top, right, bottom. A row (a, b, c, d) holds where a x + b y + c z + d ≥ 0. All four
+    together hold nowhere behind a perspective camera. Edges are at −½ and width − ½.
     """
     u, v, w = as_finite_array("P", P, 3, 4)
     right = as_number("width", width, above=0.0) - 0.5

@@ -112,8 +112,9 @@ class CameraSolution:
     shown: Array
     """Numbers (n,) of those edges in the world."""
     frustum: Frustum | None
+    reach: float
+    """How far the optical axis is drawn; `look`, at its end, is where the grip stands that turns the camera."""
     look: Array
-    """Where the grip stands that turns the camera."""
 
     def point(self, name: str) -> Mapping[str, Any]:
         """One of `points`."""

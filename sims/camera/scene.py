@@ -17,6 +17,7 @@ BODY = 1.6
 ABOVE = 0.2
 NAMED = {"house": "roof-near", "near post": "near-post", "far post": "far-post"}
 SIGHTS = ("x", "y", "z")
+NOTHING: Array = np.zeros((4, 3))
 
 
 class CameraScene:
@@ -78,7 +79,10 @@ class Eye:
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         self.figure.node.pose(s.orientation.tolist(), p.position)
-        there, f = s.frustum is not None, s.frustum
+        f = s.frustum
+        there = f is not None
+        self.figure.draw(NOTHING if f is None else f.corners, BODY, None if f is None else f.back)
+        self.axis.stroke((0.0, 0.0, 0.0), (0.0, 0.0, s.reach))
         for node in (self.figure.picture, self.wires, self.dots):
             node.show(there)
         self.figure.edges.show(there and p.show_frustum)
@@ -92,8 +96,6 @@ class Eye:
             self._frustum(f, s)
 
     def _frustum(self, f: Frustum, s: CameraSolution) -> None:
-        self.figure.draw(f.corners, BODY, f.back)
-        self.axis.stroke((0.0, 0.0, 0.0), (0.0, 0.0, f.depth + 0.5))
         if f.far is not None:
             self.far.pieces(_box(f.corners, f.far))
         self.wires.move(_all_wires(f, s.shown))

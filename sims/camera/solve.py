@@ -68,6 +68,7 @@ def solve(p: CameraParams) -> CameraSolution:
         wires=wires,
         shown=shown,
         frustum=None if eye is None else _frustum(p, camera, scale, picture_depth, points, in_camera, wires, vanishing),
+        reach=picture_depth + BEYOND,
         look=np.array(p.position) + (picture_depth + BEYOND) * camera.R[2],
     )
 

@@ -29,7 +29,11 @@ ORIGIN = (-0.5, -1.5)
 ACROSS = (math.cos(TURN), -math.sin(TURN), 0.0)
 ALONG = (math.sin(TURN), math.cos(TURN), 0.0)
 UP = (0.0, 0.0, 1.0)
-DIRECTIONS: dict[str, tuple[Role, Place]] = {"across": ("x", ACROSS), "along": ("y", ALONG), "up": ("z", UP)}
+DIRECTIONS: dict[str, tuple[Role, Place]] = {
+    "across": ("x", (-ACROSS[0], -ACROSS[1], 0.0)),
+    "along": ("y", ALONG),
+    "up": ("z", UP),
+}
 LEFT, RIGHT, FRONT, BACK, WALL, ROOF = -2.4, -1.05, 1.8, 3.6, 1.1, 1.7
 """The house: metres across, along and up in the street."""
 GAUGE, RAILS = 0.25, (-3.8, 5.8)

@@ -1,0 +1,549 @@
+"""camera: its numbers against OpenCV, what is drawn against its numbers, its hands and its motions."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import parse_qsl
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from app.motion import between
+from sims.camera import SIM, CameraParams, CameraSolution, hands, solve
+from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
+from sims.kit import readout
+from sims.kit.palette import LIGHT
+from sims.kit.viewer import Look
+from tests.server import Rig
+from tests.sims.markup import words, xml
+
+Array = npt.NDArray[np.float64]
+START = CameraParams()
+C = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+"""Columns are the level camera's axes in the world."""
+states = st.builds(
+    CameraParams,
+    fx=st.floats(100, 2000),
+    fy=st.floats(100, 2000),
+    cx=st.floats(0, 640),
+    cy=st.floats(0, 480),
+    skew=st.floats(-200, 200),
+    position=st.tuples(st.floats(-20, 20), st.floats(-20, 20), st.floats(0, 20)),
+    pan=st.floats(-180, 180),
+    tilt=st.floats(-90, 90),
+    roll=st.floats(-180, 180),
+    projection=st.sampled_from(["perspective", "orthographic", "weak"]),
+    selected=st.sampled_from(NAMES),
+)
+
+
+def pose(p: CameraParams) -> tuple[Array, Array]:
+    """R and t of the contract, by SciPy."""
+    turn = [
+        Rotation.from_euler(a, v, degrees=True).as_matrix() for a, v in zip("zxz", (p.pan, p.tilt, p.roll), strict=True)
+    ]
+    R = (turn[0] @ C @ turn[1] @ turn[2]).T
+    return R, -R @ np.array(p.position)
+
+
+def intrinsics(p: CameraParams) -> Array:
+    return np.array([[p.fx, p.skew, p.cx], [0.0, p.fy, p.cy], [0.0, 0.0, 1.0]])
+
+
+# ---- numbers
+
+
+@given(states)
+def test_matrices_are_those_of_the_contract(p: CameraParams) -> None:
+    s = solve(p)
+    R, t = pose(p)
+    np.testing.assert_allclose(s.K, intrinsics(p), rtol=1e-15)
+    np.testing.assert_allclose(s.R, R, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(s.t, t, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(s.center, -R.T @ t, rtol=0, atol=1e-12)
+    if p.projection == "perspective":
+        np.testing.assert_allclose(s.P, intrinsics(p) @ np.column_stack([R, t]), rtol=0, atol=1e-9)
+        assert s.decomposed is not None
+        np.testing.assert_allclose(s.decomposed["K"], s.K, rtol=1e-9, atol=1e-7)
+        np.testing.assert_allclose(s.decomposed["R"], s.R, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(s.decomposed["center"], s.center, rtol=0, atol=1e-7)
+    else:
+        assert s.decomposed is None
+
+
+@given(states)
+def test_pixels_are_opencvs_and_only_what_is_in_front_has_one(p: CameraParams) -> None:
+    p = p.changed({"projection": "perspective", "skew": 0.0})
+    R, t = pose(p)
+    theirs = cv2.projectPoints(POINTS, cv2.Rodrigues(R)[0], t, intrinsics(p), None)[0].reshape(-1, 2)
+    depths = (POINTS @ R.T + t)[:, 2]
+    for point, pixel, depth in zip(solve(p).points, theirs, depths, strict=True):
+        assert point["depth"] == pytest.approx(depth, abs=1e-9)
+        if abs(depth) < 1e-3:
+            continue
+        assert (point["pixel"] is None) == (depth <= 0.0)
+        if point["pixel"] is not None:
+            np.testing.assert_allclose(point["pixel"], pixel, rtol=1e-7, atol=1e-5)
+            u, v = point["pixel"]
+            assert point["in_image"] == (-0.5 <= u <= 639.5 and -0.5 <= v <= 479.5)
+
+
+@given(states)
+def test_p_maps_every_named_point_to_its_pixel(p: CameraParams) -> None:
+    s = solve(p)
+    for name, point in zip(NAMES, s.points, strict=True):
+        assert point["world"] == PLACES[name]
+        assert point["name"] == name
+        np.testing.assert_allclose(point["camera"], s.R @ point["world"] + s.t, rtol=0, atol=1e-10)
+        if point["pixel"] is not None and point["depth"] > 1e-3:
+            assert s.P is not None
+            a, b, w = s.P @ [*point["world"], 1.0]
+            np.testing.assert_allclose((a / w, b / w), point["pixel"], rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize(("cx", "cy", "fx", "fy"), [(320, 240, 600, 600), (0, 480, 300, 900), (640, 10, 2000, 100)])
+def test_fields_of_view_are_those_of_the_off_centre_frustum(cx: float, cy: float, fx: float, fy: float) -> None:
+    s = solve(START.changed({"cx": cx, "cy": cy, "fx": fx, "fy": fy}))
+    across = math.atan2(639.5 - cx, fx) + math.atan2(cx + 0.5, fx)
+    down = math.atan2(479.5 - cy, fy) + math.atan2(cy + 0.5, fy)
+    assert (s.fov_x, s.fov_y) == pytest.approx((math.degrees(across), math.degrees(down)), abs=1e-12)
+
+
+def upright(s: CameraSolution, which: str) -> float:
+    """Height of a post in the picture."""
+    return s.point(f"{which}-foot")["pixel"][1] - s.point(f"{which}-post")["pixel"][1]  # type: ignore[no-any-return]
+
+
+def test_without_perspective_near_and_far_posts_are_as_tall() -> None:
+    ratios = {}
+    for kind in ("perspective", "orthographic", "weak"):
+        s = solve(START.changed({"projection": kind}))
+        ratios[kind] = upright(s, "near") / upright(s, "far")
+    assert ratios["orthographic"] == pytest.approx(1.0)
+    assert ratios["weak"] == pytest.approx(1.0)
+    assert ratios["perspective"] > 1.8
+
+
+@pytest.mark.parametrize("changes", [{}, {"pan": 30, "cx": 100}, {"position": (2, -6, 3), "tilt": -10, "skew": 50}])
+def test_orthographic_keeps_sizes_at_the_subjects_depth_and_weak_at_the_mean_depth(changes: dict[str, Any]) -> None:
+    p = START.changed(changes)
+    R, t = pose(p)
+    depths = (POINTS @ R.T + t)[:, 2]
+    middle = (R @ MIDDLE + t)[2]
+    for kind, depth in (("orthographic", middle), ("weak", depths.mean())):
+        s = solve(p.changed({"projection": kind}))
+        assert s.scale_depth == pytest.approx(depth)
+        assert s.P is not None
+        np.testing.assert_allclose(s.P[2], [0, 0, 0, 1], rtol=0, atol=0)
+        np.testing.assert_allclose(s.P[:2, :3], intrinsics(p)[:2, :2] @ R[:2] / depth, rtol=1e-12, atol=1e-12)
+    perspective, flat = (solve(p.changed({"projection": kind})).subject for kind in ("perspective", "orthographic"))
+    np.testing.assert_allclose(flat["pixel"], perspective["pixel"], rtol=0, atol=1e-9)
+
+
+@given(states)
+def test_every_state_has_an_answer(p: CameraParams) -> None:
+    s = solve(p)
+    exists = p.projection == "perspective" or (s.scale_depth is not None and s.scale_depth > 0.0)
+    assert (s.P is not None) == exists == (s.frustum is not None)
+    assert np.isfinite(s.wires).all()
+    u, v = s.wires[..., 0], s.wires[..., 1]
+    assert ((u >= -0.51) & (u <= 639.51) & (v >= -0.51) & (v <= 479.51)).all()
+    for html in (readout.render(SIM.readouts(p, s)), SIM.panes(p, s, LIGHT)[0].svg):  # type: ignore[misc]
+        assert "nan" not in html.lower()
+
+
+@given(states)
+def test_edges_in_the_picture_are_pieces_of_the_projected_edges(p: CameraParams) -> None:
+    s = solve(p)
+    for number, (a, b) in zip(s.shown.tolist(), s.wires, strict=True):
+        assert s.P is not None
+        first, second = (s.P @ [*end, 1.0] for end in WIRES[number])
+        line = np.cross(first, second)
+        if np.linalg.norm(line[:2]) < 1e-6 * np.abs(first).max() * np.abs(second).max():
+            continue  # the edge points at the camera: a dot
+        line = line / np.linalg.norm(line[:2])
+        for end in (a, b):
+            assert abs(line @ [*end, 1.0]) < 1e-4
+
+
+def test_parallels_of_the_street_meet_at_its_vanishing_points() -> None:
+    p = START.changed({"tilt": -12, "pan": 10, "roll": 5, "skew": 30})
+    s = solve(p)
+    assert s.P is not None
+    pairs = {"along": ("eave-near-left", "eave-far-left"), "across": ("eave-near-left", "eave-near-right"),
+             "up": ("wall-near-left", "eave-near-left")}  # fmt: skip
+    for meet in s.vanishing:
+        line = np.cross(*(s.P @ [*PLACES[name], 1.0] for name in pairs[meet["name"]]))
+        assert abs(line @ meet["homogeneous"]) < 1e-9 * np.linalg.norm(line) * np.linalg.norm(meet["homogeneous"])
+        assert meet["pixel"] is not None
+    level = {meet["name"]: meet for meet in solve(START).vanishing}
+    assert level["up"]["pixel"] is None
+    assert level["along"]["in_image"]
+    assert not level["across"]["in_image"]
+
+
+# ---- what is drawn
+
+
+@pytest.fixture(scope="module")
+def rig() -> Iterator[Rig]:
+    with Rig(SIM) as rig:
+        yield rig
+
+
+def drawn_states(count: int = 20) -> list[CameraParams]:
+    """Named states, and random ones near enough to see something."""
+    random = np.random.default_rng(3)
+    found = [START, *(START.changed(changes) for changes in SIM.states.values())]
+    for k in range(count):
+        x, y, z = random.uniform((-3, -7, 0.2), (3, 0, 3)).tolist()
+        found.append(
+            START.changed(
+                {
+                    "fx": random.uniform(100, 2000),
+                    "fy": random.uniform(100, 2000),
+                    "cx": random.uniform(0, 640),
+                    "cy": random.uniform(0, 480),
+                    "skew": random.uniform(-200, 200),
+                    "position": (x, y, z),
+                    "pan": random.uniform(-60, 60),
+                    "tilt": random.uniform(-40, 40),
+                    "roll": random.uniform(-180, 180),
+                    "projection": ("perspective", "perspective", "orthographic", "weak")[k % 4],
+                    "selected": NAMES[k % len(NAMES)],
+                }
+            )
+        )
+    return found
+
+
+each_drawn = pytest.mark.parametrize("p", drawn_states(), ids=lambda p: p.query() or "defaults")
+
+
+def sight_line(p: CameraParams, place: Array) -> tuple[Array, Array]:
+    """A place on the line of sight of a place in the picture as it is drawn, and its direction."""
+    if p.projection == "perspective":
+        return np.array(p.position), place - np.array(p.position)
+    return place, pose(p)[0][2]
+
+
+def miss(start: Array, direction: Array, point: Array) -> float:
+    """How far a line passes by a point."""
+    unit = direction / np.linalg.norm(direction)
+    gap = point - start
+    return float(np.linalg.norm(gap - unit * (unit @ gap)))
+
+
+@each_drawn
+def test_camera_and_grips_are_where_the_numbers_say(rig: Rig, p: CameraParams) -> None:
+    rig.show(p)
+    R, _ = pose(p)
+    drawn = rig.model.world_pose("/camera")
+    np.testing.assert_allclose(drawn[:3, :3], R.T, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(drawn[:3, 3], p.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(rig.model.world_pose("/camera/axes/arrows"), drawn, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(rig.model.world_pose("/eye")[:3, 3], p.position, rtol=0, atol=1e-12)
+    look = rig.model.world_pose("/look")[:3, 3] - p.position
+    np.testing.assert_allclose(look / np.linalg.norm(look), R[2], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], PLACES[p.selected], rtol=0, atol=1e-12)
+
+
+@each_drawn
+def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p: CameraParams) -> None:
+    rig.show(p)
+    s = solve(p)
+    seen = [point for point in s.points if point["in_image"]]
+    if s.frustum is None:
+        assert not rig.model.visible("/camera/dots")
+        assert not rig.model.visible("/camera/ray")
+        return
+    dots = rig.model.points("/camera/dots").reshape(-1, 3)
+    assert len(dots) == len(seen)
+    for dot, point in zip(dots, seen, strict=True):
+        assert miss(*sight_line(p, dot), np.array(point["world"])) < 1e-6 * max(1.0, point["depth"])
+    rays = rig.model.points("/camera/rays").reshape(-1, 2, 3)
+    np.testing.assert_allclose(rays[:, 1], [point["world"] for point in seen] or np.empty((0, 3)), rtol=0, atol=2e-6)
+    chosen = s.point(p.selected)
+    assert rig.model.visible("/camera/ray") == (chosen["pixel"] is not None) == rig.model.visible("/camera/dot")
+    if chosen["pixel"] is not None:
+        dot = rig.model.world_pose("/camera/dot")[:3, 3]
+        assert miss(*sight_line(p, dot), np.array(chosen["world"])) < 1e-6
+        start, end = rig.model.points("/camera/ray")[0]
+        np.testing.assert_allclose(end, chosen["world"], rtol=0, atol=4e-6)
+        assert miss(start, end - start, dot) < 1e-5
+        if p.projection == "perspective":
+            np.testing.assert_allclose(start, p.position, rtol=0, atol=1e-12)
+
+
+@each_drawn
+def test_frustum_and_picture_are_the_true_ones(rig: Rig, p: CameraParams) -> None:
+    rig.show(p)
+    s = solve(p)
+    assert rig.model.visible("/camera/picture") == (s.frustum is not None) == rig.model.visible("/camera/frustum")
+    if s.frustum is None:
+        return
+    R, t = pose(p)
+
+    def pixels(places: Array) -> Array:
+        """By the camera's own K: on the picture itself, at its depth or, without perspective, at the one depth."""
+        axes = places.reshape(-1, 3) @ R.T + t
+        flat = axes[:, :2] / (s.scale_depth or axes[:, 2:])
+        return np.asarray(np.column_stack([flat, np.ones(len(flat))]) @ intrinsics(p)[:2].T)
+
+    frame = [(-0.5, -0.5), (639.5, -0.5), (639.5, 479.5), (-0.5, 479.5)]
+    corners = rig.model.points("/camera/picture").reshape(-1, 3)
+    np.testing.assert_allclose(pixels(corners), frame, rtol=0, atol=2e-3)
+    edges = rig.model.points("/camera/frustum").reshape(-1, 2, 3)
+    np.testing.assert_allclose(pixels(edges[:4, 1]), frame, rtol=0, atol=2e-3)
+    if p.projection == "perspective":
+        np.testing.assert_allclose(edges[:4, 0], np.tile(p.position, (4, 1)), rtol=0, atol=1e-6)
+    else:
+        along = edges[:4, 1] - edges[:4, 0]
+        np.testing.assert_allclose(along, np.tile(s.frustum.depth * R[2], (4, 1)), rtol=0, atol=1e-5)
+    drawn = rig.model.points("/camera/wires").reshape(-1, 2, 3)[s.shown]
+    np.testing.assert_allclose(pixels(drawn), s.wires.reshape(-1, 2), rtol=0, atol=5e-3)
+
+
+@each_drawn
+def test_the_picture_beside_the_scene_shows_the_same_pixels(rig: Rig, p: CameraParams) -> None:
+    rig.show(p)
+    s = solve(p)
+    marks = {e.get("data-link"): e for e in xml(rig.model.html("s3-panes")).iter() if e.get("data-link")}
+    assert set(marks) == {point["name"] for point in s.points if point["pixel"] is not None}
+    for point in s.points:
+        if point["in_image"]:
+            found = re.findall(r"[-\d.]+", str(marks[point["name"]].get("transform")))
+            np.testing.assert_allclose([float(v) for v in found], point["pixel"], rtol=0, atol=0.006)
+        elif point["pixel"] is not None:
+            assert next(marks[point["name"]].iter("path")) is not None, "an arrowhead at the border"
+    assert "∞" in rig.model.html("s3-panes") or all(m["pixel"] or not m["homogeneous"] for m in s.vanishing)
+
+
+def test_the_street_stands_on_the_ground(rig: Rig) -> None:
+    assert WIRES[..., 2].min() == 0.0
+    assert rig.model.world_pose("/ground")[2, 3] == 0.0
+    drawn = np.concatenate([rig.model.points(f"/street/{role}").reshape(-1, 3) for role in ("ink", "x", "y", "z")])
+    assert len(drawn) == 2 * len(WIRES)
+    assert abs(drawn[:, 2].min()) < 1e-12
+
+
+# ---- selection
+
+
+def test_a_point_is_selected_in_the_scene_and_lights_up_everywhere(rig: Rig) -> None:
+    rig.show(START)
+    rig.browser.click("/points/far-post")
+    rig.settle()
+    assert rig.session.params.selected == "far-post"  # type: ignore[attr-defined]
+    chosen = [e for e in xml(rig.model.html("s3-panes")).iter() if "s3-selected" in str(e.get("class"))]
+    assert [e.get("data-link") for e in chosen] == ["far-post"]
+    rows = [e for e in xml(rig.model.html("s3-readouts")).iter("tr") if e.get("class") == "s3-selected"]
+    assert [e.get("data-link") for e in rows] == ["far-post"]
+    np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], PLACES["far-post"])
+    assert rig.model.labels()["/selected/label"] == TITLES["far-post"].lower()
+
+
+def test_every_point_can_be_clicked_and_its_row_pressed(rig: Rig) -> None:
+    rig.show(START)
+    for name in NAMES:
+        assert rig.model.node(f"/points/{name}").clicks
+        np.testing.assert_allclose(rig.model.world_pose(f"/points/{name}")[:3, 3], PLACES[name])
+    rows = [e.get("data-link") for e in xml(rig.model.html("s3-readouts")).iter("tr") if e.get("data-link")]
+    assert rows == list(NAMES)
+
+
+def test_somebody_who_watches_selects_nothing() -> None:
+    with Rig(SIM, look=Look(watching=True)) as rig:
+        rig.browser.click("/points/far-post")
+        rig.settle()
+        assert rig.session.params == START
+
+
+# ---- words
+
+
+def test_a_point_that_is_not_in_front_is_said_to_have_no_pixel() -> None:
+    behind = START.changed({"selected": "back-post"})
+    text = words(readout.render(SIM.readouts(behind, solve(behind))))
+    assert "not in front of the camera, so there is no pixel" in text
+    assert "Pixel: K x" not in text
+    in_plane = START.changed({"position": (0.0, PLACES["near-post"][1], 1.2), "selected": "near-post"})
+    s = solve(in_plane)
+    assert s.point("near-post")["depth"] == 0.0
+    assert s.point("near-post")["pixel"] is None
+
+
+def test_the_chosen_point_is_worked_through_step_by_step() -> None:
+    p = START.changed({"selected": "near-post", "skew": 40, "pan": 7})
+    text = words(readout.render(SIM.readouts(p, solve(p)))).replace("−", "-")
+    R, t = pose(p)
+    axes = R @ PLACES["near-post"] + t
+    x = axes / axes[2]
+    pixel = intrinsics(p) @ x
+    for numbers, digits in ((axes, 3), (x[:2], 3), (pixel[:2], 2)):
+        assert " , ".join(f"{v:.{digits}f}" for v in numbers) in text
+
+
+def test_two_points_with_one_pixel_are_pointed_out() -> None:
+    a, b = np.array(PLACES["near-post"]), np.array(PLACES["far-post"])
+    at = a + (a - b) / np.linalg.norm(a - b) * 2.0
+    p = START.changed({"position": tuple(at.tolist()), "selected": "near-post"})
+    p = p.changed(hands.turned_to(p, tuple(b.tolist())))
+    assert "Far post, top has the same pixel" in words(readout.render(SIM.readouts(p, solve(p))))
+
+
+def test_a_projection_without_scale_says_so_and_the_rest_goes_on() -> None:
+    p = START.changed(SIM.states["no scale"])
+    s = solve(p)
+    assert s.P is None
+    assert all(point["pixel"] is None for point in s.points)
+    assert "isn't in front of the camera" in words(readout.render(SIM.readouts(p, s)))
+
+
+# ---- hands
+
+
+def test_focal_lengths_move_together_while_they_are_linked(rig: Rig) -> None:
+    rig.show(START.changed({"fy": 300}))
+    rig.browser.move("fx", 900)
+    rig.settle()
+    assert (rig.session.params.fx, rig.session.params.fy) == (900.0, 450.0)  # type: ignore[attr-defined]
+    rig.browser.move("fy", 600)
+    rig.settle()
+    assert rig.session.params.fx == pytest.approx(1200.0)  # type: ignore[attr-defined]
+    rig.browser.move("linked", False)
+    rig.browser.move("fx", 500)
+    rig.settle()
+    p = rig.session.params
+    assert (p.fx, p.fy) == (500.0, 600.0)  # type: ignore[attr-defined]
+    assert CameraParams.from_query(parse_qsl(p.query())) == p
+
+
+def test_a_link_sets_one_focal_length_alone() -> None:
+    p = CameraParams.from_query([("fx", "900")])
+    assert (p.fx, p.fy, p.linked) == (900.0, 600.0, True)
+
+
+def test_grips_move_and_turn_the_camera_and_the_numbers_agree(rig: Rig) -> None:
+    rig.show(START.changed({"roll": 20}))
+    rig.browser.drag("/eye", (0.5, -4.5, 1.5), (1.0, -5.0, 2.0))
+    rig.settle()
+    p = rig.session.params
+    assert isinstance(p, CameraParams)
+    assert p.position == pytest.approx((1.0, -5.0, 2.0))
+    aim = (2.0, 1.0, 0.5)
+    rig.browser.drag("/look", aim)
+    rig.settle()
+    p = rig.session.params
+    assert isinstance(p, CameraParams)
+    toward = np.array(aim) - p.position
+    np.testing.assert_allclose(pose(p)[0][2], toward / np.linalg.norm(toward), rtol=0, atol=1e-9)
+    assert p.roll == 20.0
+    assert rig.browser.control("pan").value == pytest.approx(p.pan)
+    assert rig.browser.control("tilt").value == pytest.approx(p.tilt)
+    np.testing.assert_allclose(rig.model.world_pose("/camera")[:3, :3], pose(p)[0].T, rtol=0, atol=1e-9)
+
+
+def test_the_camera_stays_where_it_can_be(rig: Rig) -> None:
+    rig.show(START)
+    rig.browser.drag("/eye", (30.0, -50.0, -3.0))
+    rig.settle()
+    assert rig.session.params.position == (20.0, -20.0, 0.0)  # type: ignore[attr-defined]
+    rig.browser.drag("/look", tuple(rig.model.world_pose("/eye")[:3, 3].tolist()))
+    rig.settle()
+    assert not rig.problems()
+
+
+def test_the_principal_point_is_moved_in_the_picture(rig: Rig) -> None:
+    rig.show(START)
+    rig.host.call(lambda: rig.session.drag("principal", (100.0, 400.0)))
+    rig.settle()
+    s = solve(rig.session.params)  # type: ignore[arg-type]
+    assert s.K[:2, 2].tolist() == [100.0, 400.0]
+
+
+@given(states)
+def test_looking_at_the_subject_puts_it_on_the_principal_point(p: CameraParams) -> None:
+    for step in hands.look(p):
+        p = p.changed(step.changes)
+    p = p.changed({"projection": "perspective"})
+    subject = solve(p).subject
+    assert subject["depth"] > 0.0
+    np.testing.assert_allclose(subject["pixel"], (p.cx, p.cy), rtol=0, atol=1e-4)
+
+
+def test_looking_turns_the_shorter_way_round() -> None:
+    p = START.changed({"position": (-1.0, 6.0, 1.0), "pan": -170})
+    pans = [step.changes["pan"] for step in hands.look(p)]
+    ways = [abs(b - a) for a, b in itertools.pairwise([p.pan, *pans])]
+    assert sum(way for way in ways if way != 360.0) < 180.0
+
+
+# ---- dolly zoom
+
+
+def height(p: CameraParams) -> float:
+    R, t = pose(p)
+    a, b = (intrinsics(p) @ (R @ end + t) for end in SUBJECT)
+    return float(np.linalg.norm(a[:2] / a[2] - b[:2] / b[2]))
+
+
+def frames(p: CameraParams) -> Iterator[CameraParams]:
+    """Every state that a browser may see on the way: each leg, in twelfths."""
+    for step in hands.dolly_zoom(p):
+        start = p
+        for fraction in np.linspace(0.0, 1.0, 13).tolist():
+            p = start.moved({k: between(getattr(start, k), v, fraction) for k, v in step.changes.items()})
+            yield p
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"fx": 300, "fy": 300},
+        {"cx": 100, "cy": 400, "skew": 60, "fy": 700},
+        {"position": (-4, -5, 4), "pan": -25, "tilt": -25},
+        {"roll": 70, "tilt": 10},
+        {"pan": 30},
+        {"fx": 2000, "fy": 1500},
+        {"fx": 120, "fy": 110},
+    ],
+)
+def test_dolly_zoom_keeps_the_house_as_tall_within_half_a_pixel(changes: dict[str, Any]) -> None:
+    start = START.changed(changes)
+    wanted = height(start)
+    way = list(frames(start))
+    assert len(way) > 50
+    assert max(abs(height(p) - wanted) for p in way) < 0.5
+    end = way[-1]
+    assert math.dist(end.position, start.position) > 1.0
+    assert end.fx / start.fx == pytest.approx(end.fy / start.fy)
+    axis = pose(start)[0][2]
+    assert miss(np.array(start.position), axis, np.array(end.position)) < 1e-9, "it moves along the optical axis"
+    assert solve(end).subject["height"] == pytest.approx(wanted, abs=0.5)
+
+
+def test_dolly_zoom_first_looks_where_the_subject_is_out_of_sight() -> None:
+    way = list(frames(START.changed({"pan": 180})))
+    looked = next(k for k, p in enumerate(way) if solve(p).subject["depth"] > 0.5 and p.pan == way[-1].pan)
+    wanted = height(way[looked])
+    assert max(abs(height(p) - wanted) for p in way[looked:]) < 0.5
+
+
+@given(states)
+def test_actions_end_in_states_from_everywhere(p: CameraParams) -> None:
+    for action in (hands.look, hands.dolly_zoom):
+        state = p
+        for step in action(p):
+            state = state.changed(step.changes)
+        assert SIM.describe(state, solve(state))
