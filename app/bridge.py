@@ -70,11 +70,17 @@ class Act(msgspec.Struct, tag="action", tag_field="type", forbid_unknown_fields=
     name: Annotated[str, msgspec.Meta(max_length=100)]
 
 
+class Point(msgspec.Struct, tag="point", tag_field="type", forbid_unknown_fields=True):
+    """The pointer is on something that is linked across pictures, tables and the scene; an empty name: on nothing."""
+
+    name: Annotated[str, msgspec.Meta(max_length=100)]
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state."""
 
 
-channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Get)
+channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Get)
 
 
 @dataclass
@@ -333,6 +339,8 @@ class Bridge:
                 session.drag(message.name, (message.x, message.y))
             elif isinstance(message, Act):
                 session.act(message.name)
+            elif isinstance(message, Point):
+                session.point(message.name)
             elif isinstance(message, Set):
                 session.change(message.params, live=False)
         except ValidationError as error:

@@ -80,6 +80,11 @@ class Session:
             raise KeyError(name)
         self.change(handle(self.params, place))
 
+    def point(self, name: str) -> None:
+        """Light up in every scene what somebody points at in a picture or table; an empty name is nothing."""
+        for viewer in list(self.viewers):
+            viewer.point(name)
+
     def act(self, name: str) -> None:
         """Press a button: reset, or one of the sim's actions."""
         self.stop_motion()

@@ -285,6 +285,7 @@ for (const kind of ["pointerover", "focusin"]) {
     if (now === lit) return;
     lit = now;
     light();
+    if (!sim.watching) send({ type: "point", name: node?.dataset.link ?? "" });
   });
 }
 

@@ -34,6 +34,7 @@ class CameraScene:
             spot.pose(position=place)
             stage.link(spot, name)
         self.selected = stage.ball("/selected", 1.5 * SPOT, "held")
+        self.lit = stage.ball("/lit", 1.4 * SPOT, "held")
         self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, ABOVE))
         self.labels = {
             point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
@@ -53,6 +54,13 @@ class CameraScene:
         self.selected_label.text(TITLES[p.selected].lower())
         for point, label in self.labels.items():
             label.show(p.show_labels and p.selected != point)
+        self.lit.show(False)
+
+    def point(self, name: str) -> None:
+        """Light up the point that somebody points at in the picture or the table, or none."""
+        self.lit.show(name in PLACES)
+        if name in PLACES:
+            self.lit.pose(position=PLACES[name])
 
 
 def above(place: Place) -> Place:
@@ -70,7 +78,7 @@ class Eye:
         self.far = stage.lines("/camera/far", np.zeros((9, 3)), "ghost", width=1.0)
         self.wires = stage.strokes("/camera/wires", ROLES, width=1.5)
         self.dots = stage.cloud("/camera/dots", np.zeros((0, 3)), "ink", size=0.022)
-        self.rays = stage.lines("/camera/rays", np.zeros((2, 3)), "ghost", width=1.0)
+        self.rays = stage.lines("/camera/rays", np.zeros((2, 3)), "ghost", width=0.6)
         self.dot = stage.ball("/camera/dot", 0.024, "held")
         self.ray = stage.lines("/camera/ray", np.zeros((2, 3)), "held", width=3.5)
         self.meets = stage.strokes("/camera/vanishing", SIGHTS, width=2.5)

@@ -109,7 +109,12 @@ class Picture:
         """A named point: where else `link` stands (table, other pictures) lights up with it, and a click selects it."""
         kind = "s3-point s3-selected" if chosen else "s3-point"
         ring = '<circle class="s3-ring" r="13"/>' if chosen else ""
-        words = f'<text x="18" y="-14" class="s3-halo" fill="var(--held)">{escape(label)}</text>' if label else ""
+        side, anchor = (-18, "end") if at[0] > 0.6 * self.width else (18, "start")
+        words = (
+            f'<text x="{side}" y="-14" text-anchor="{anchor}" class="s3-halo" fill="var(--held)">{escape(label)}</text>'
+            if label
+            else ""
+        )
         self._over.append(
             f'<g data-link="{escape(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
             f'<title>{escape(title)}</title><circle class="s3-reach" r="16"/>{ring}'
@@ -129,7 +134,8 @@ class Picture:
         far = point[2] == 0.0
         head = "M-11 -9L5 0L-11 9z" + ("M-23 -9L-7 0L-23 9z" if far else "")
         anchor = "end" if dx > 0.4 else "start" if dx < -0.4 else "middle"
-        down = 9.0 - (44.0 if far else 32.0) * dy if anchor == "middle" else -16.0 if y > 60.0 else 36.0
+        beside = 36.0 if chosen or y < 60.0 else -16.0
+        down = 9.0 - (44.0 if far else 32.0) * dy if anchor == "middle" else beside
         text = (
             f'<text x="0" y="{down:.1f}" text-anchor="{anchor}" class="s3-halo"'
             f' fill="var(--{role})">{escape(words)}{" ∞" if far else ""}</text>'

@@ -156,6 +156,13 @@ class Viewer:
                 set_property(self._panes, "content", pane.render(panes, self._style))
         self.client.flush()
 
+    def point(self, name: str) -> None:
+        """Light up what somebody points at elsewhere, in scenes that know how; it passes with the next drawing."""
+        if (light := getattr(self.scene, "point", None)) is not None:
+            with self.client.atomic():
+                light(name)
+            self.client.flush()
+
     def _regions(self, params: Params) -> str:
         """Where on a slider's track something happens, as fractions, for the companion to mark."""
         return _marks(

@@ -352,6 +352,21 @@ def test_a_point_is_selected_in_the_scene_and_lights_up_everywhere(rig: Rig) -> 
     assert rig.model.labels()["/selected/label"] == TITLES["far-post"].lower()
 
 
+def test_what_is_pointed_at_in_picture_or_table_lights_up_in_the_scene_and_passes(rig: Rig) -> None:
+    rig.show(START)
+    assert not rig.model.visible("/lit")
+    for name in ("cube-far", "near-foot"):
+        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.settle()
+        assert rig.model.visible("/lit")
+        np.testing.assert_allclose(rig.model.world_pose("/lit")[:3, 3], PLACES[name])
+    for name in ("", "nobody"):
+        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.settle()
+        assert not rig.model.visible("/lit")
+    assert rig.session.params == START, "pointing changes nothing"
+
+
 def test_every_point_can_be_clicked_and_its_row_pressed(rig: Rig) -> None:
     rig.show(START)
     for name in NAMES:
