@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.camera import aim
 from sims.camera.model import CameraParams, Place
-from sims.camera.solve import camera_of
+from sims.camera.solve import LIFT, camera_of
 from sims.camera.world import MIDDLE, SUBJECT
 from sims.kit.sim import Step
 
@@ -24,8 +24,9 @@ WIDE = 400.0
 
 
 def hold_eye(p: CameraParams, place: tuple[float, ...]) -> dict[str, Any]:
-    """The centre of projection."""
-    return {"position": place}
+    """The centre of projection, by the grip above it."""
+    x, y, z = place
+    return {"position": (x, y, z - LIFT)}
 
 
 def hold_look(p: CameraParams, place: tuple[float, ...]) -> dict[str, Any]:

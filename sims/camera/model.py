@@ -115,6 +115,8 @@ class CameraSolution:
     reach: float
     """How far the optical axis is drawn; `look`, at its end, is where the grip stands that turns the camera."""
     look: Array
+    grip: Array
+    """Where the grip stands that moves the camera: above it, where nothing hides it."""
 
     def point(self, name: str) -> Mapping[str, Any]:
         """One of `points`."""

@@ -11,7 +11,7 @@ from sims.kit.camera_figure import CameraFigure
 from sims.kit.stage import Stage
 
 WIDTHS = {"ink": 2.0, "x": 2.0, "y": 2.5, "z": 3.0}
-SPOT, GRIP = 0.055, 0.09
+SPOT, GRIP = 0.055, 0.075
 BODY = 1.6
 """Times its usual size."""
 ABOVE = 0.2
@@ -41,14 +41,15 @@ class CameraScene:
         }
         self.camera = Eye(stage)
         self.stand = stage.lines("/stand", np.zeros((2, 3)), "ghost", width=1.2)
-        self.eye = stage.grip("/eye", GRIP, halo=2.6)
-        self.look = stage.grip("/look", 0.7 * GRIP)
+        self.eye = stage.grip("/eye", GRIP)
+        self.look = stage.grip("/look", GRIP)
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         x, y, _ = p.position
+        grip = s.grip.tolist()
         self.camera.draw(p, s)
-        self.stand.stroke((x, y, 0.0), p.position)
-        self.eye.pose(position=p.position)
+        self.stand.stroke((x, y, 0.0), grip)
+        self.eye.pose(position=grip)
         self.look.pose(position=s.look.tolist())
         self.selected.pose(position=PLACES[p.selected])
         self.selected_label.text(TITLES[p.selected].lower())

@@ -22,10 +22,13 @@ NEAREST = 1e-6
 """Metres of depth from which on the picture shows edges."""
 LEAST_DEPTH = 0.05
 """Metres of depth below which a picture without perspective has no sensible scale."""
+LIFT = 0.6
+"""Metres by which the grip that moves the camera stands above it."""
 BEYOND = 0.5
 """Metres by which the grip that turns the camera stands farther away than the picture."""
 WAYS: Array = np.array([way for _, way in DIRECTIONS.values()])
-AIMS: Array = np.array([MIDDLE, *SUBJECT])
+FOLLOWED: Array = np.concatenate([POINTS, [MIDDLE, *SUBJECT]])
+"""Named points, and of the subject middle, ground and ridge."""
 CORNERS: Array = np.array([(-0.5, -0.5), (WIDTH - 0.5, -0.5), (WIDTH - 0.5, HEIGHT - 0.5), (-0.5, HEIGHT - 0.5)])
 Eye = Camera | AffineCamera
 
@@ -42,13 +45,13 @@ def camera_of(p: CameraParams) -> Camera:
 def solve(p: CameraParams) -> CameraSolution:
     """All the mathematics of a state."""
     camera = camera_of(p)
-    in_camera, aims = camera.to_camera(POINTS), camera.to_camera(AIMS)
-    mean, depth = float(in_camera[:, 2].mean()), aims.item(0, 2)
+    axes = camera.to_camera(FOLLOWED)
+    in_camera, depth = axes[: len(POINTS)], axes.item(len(POINTS), 2)
+    mean = float(in_camera[:, 2].sum()) / len(POINTS)
     eye, scale = _eye(p, camera, {"weak": mean, "orthographic": depth}.get(p.projection))
-    pixels = np.full((len(POINTS), 2), np.nan) if eye is None else eye.project(POINTS)[0]
-    points = _points(in_camera, pixels)
+    pixels, wires, shown = _pictured(eye, camera)
+    points = _points(in_camera, pixels[: len(POINTS)])
     vanishing = () if eye is None else _vanishing(eye.P)
-    wires, shown = (np.empty((0, 2, 2)), np.empty(0, int)) if eye is None else _wires(eye, camera)
     finite = eye is camera
     picture_depth = PICTURE_WIDTH * p.fx / WIDTH
     return CameraSolution(
@@ -62,7 +65,7 @@ def solve(p: CameraParams) -> CameraSolution:
         points=points,
         mean_depth=mean,
         scale_depth=scale,
-        subject=_subject(eye, depth),
+        subject=_subject(pixels[len(POINTS) :], depth),
         decomposed=_decomposed(camera) if finite else None,
         vanishing=vanishing,
         wires=wires,
@@ -70,6 +73,7 @@ def solve(p: CameraParams) -> CameraSolution:
         frustum=None if eye is None else _frustum(p, camera, scale, picture_depth, points, in_camera, wires, vanishing),
         reach=picture_depth + BEYOND,
         look=np.array(p.position) + (picture_depth + BEYOND) * camera.R[2],
+        grip=np.add(p.position, (0.0, 0.0, LIFT)),
     )
 
 
@@ -93,19 +97,13 @@ def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
     return tuple(found)
 
 
-def _subject(eye: Eye | None, depth: float) -> dict[str, Any]:
-    subject = {"world": MIDDLE, "depth": depth, "pixel": None, "height": None}
-    if eye is None:
-        return subject
-    (middle, ground, ridge), _ = eye.project(AIMS)
-    u, v = middle.tolist()
-    across, down = (ridge - ground).tolist()
-    height = math.hypot(across, down)
+def _subject(pixels: Array, depth: float) -> dict[str, Any]:
+    (u, v), ground, ridge = pixels.tolist()
+    height = math.dist(ground, ridge)
     return {
-        **subject,
-        "pixel": (u, v) if math.isfinite(u) else None,
-        "height": height if math.isfinite(height) else None,
-    }
+        "world": MIDDLE, "depth": depth, "pixel": (u, v) if u == u else None,
+        "height": height if height == height else None,
+    }  # fmt: skip
 
 
 def _decomposed(camera: Camera) -> dict[str, Array]:
@@ -128,11 +126,14 @@ def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
     return tuple(found)
 
 
-def _wires(eye: Eye, camera: Camera) -> tuple[Array, Array]:
-    """Edges in the picture, in pixels, and their numbers in the world."""
+def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, Array]:
+    """Pixels of what is followed (n, 2), edges in the picture (m, 2, 2), and their numbers in the world (m,)."""
+    if eye is None:
+        return np.full((len(FOLLOWED), 2), np.nan), np.empty((0, 2, 2)), np.empty(0, int)
     plane = np.append(camera.R[2], camera.t[2] - NEAREST)
     parts, exists = clip_segments(WIRES, np.vstack([frame_planes(eye.P, WIDTH, HEIGHT), plane]))
-    return eye.project(parts[exists])[0], np.flatnonzero(exists)
+    pixels, _ = eye.project(np.concatenate([FOLLOWED, parts[exists].reshape(-1, 3)]))
+    return pixels[: len(FOLLOWED)], pixels[len(FOLLOWED) :].reshape(-1, 2, 2), np.flatnonzero(exists)
 
 
 def _frustum(

@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from app.motion import between
 from sims.camera import SIM, CameraParams, CameraSolution, hands, solve
+from sims.camera.solve import LIFT
 from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
 from sims.kit import readout
 from sims.kit.palette import LIGHT
@@ -251,7 +252,7 @@ def test_camera_and_grips_are_where_the_numbers_say(rig: Rig, p: CameraParams) -
     np.testing.assert_allclose(drawn[:3, :3], R.T, rtol=0, atol=1e-9)
     np.testing.assert_allclose(drawn[:3, 3], p.position, rtol=0, atol=1e-12)
     np.testing.assert_allclose(rig.model.world_pose("/camera/axes/arrows"), drawn, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(rig.model.world_pose("/eye")[:3, 3], p.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(rig.model.world_pose("/eye")[:3, 3] - (0, 0, LIFT), p.position, rtol=0, atol=1e-12)
     look = rig.model.world_pose("/look")[:3, 3] - p.position
     np.testing.assert_allclose(look / np.linalg.norm(look), R[2], rtol=0, atol=1e-9)
     np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], PLACES[p.selected], rtol=0, atol=1e-12)
@@ -450,7 +451,7 @@ def test_a_link_sets_one_focal_length_alone() -> None:
 
 def test_grips_move_and_turn_the_camera_and_the_numbers_agree(rig: Rig) -> None:
     rig.show(START.changed({"roll": 20}))
-    rig.browser.drag("/eye", (0.5, -4.5, 1.5), (1.0, -5.0, 2.0))
+    rig.browser.drag("/eye", (0.5, -4.5, 1.5), (1.0, -5.0, 2.0 + LIFT))
     rig.settle()
     p = rig.session.params
     assert isinstance(p, CameraParams)
@@ -473,7 +474,7 @@ def test_the_camera_stays_where_it_can_be(rig: Rig) -> None:
     rig.browser.drag("/eye", (30.0, -50.0, -3.0))
     rig.settle()
     assert rig.session.params.position == (20.0, -20.0, 0.0)  # type: ignore[attr-defined]
-    rig.browser.drag("/look", tuple(rig.model.world_pose("/eye")[:3, 3].tolist()))
+    rig.browser.drag("/look", rig.session.params.position)
     rig.settle()
     assert not rig.problems()
 

@@ -1,0 +1,152 @@
+"""camera: a learner's hands on the camera, on its points wherever they are shown, and on its motions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sims.camera.solve import LIFT
+from sims.camera.world import PLACES, SUBJECT
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import project
+
+Array = npt.NDArray[np.float64]
+MARKS = """() => Object.fromEntries([...document.querySelectorAll("svg [data-link]")].map(
+    (mark) => [mark.dataset.link, mark.getAttribute("transform").match(/[-\\d.]+/g).map(Number)]))"""
+LIT = """() => [...document.querySelectorAll(".s3-lit")].map((node) => [node.tagName, node.dataset.link])"""
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs, picture and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        drawn = learner.scene.world_pose("/camera")
+        np.testing.assert_allclose(drawn[:3, :3], np.transpose(solution["R"]), rtol=0, atol=1e-6)
+        np.testing.assert_allclose(drawn[:3, 3], solution["center"], rtol=0, atol=1e-6)
+        assert learner.reads("K", solution["K"], 1)
+        assert solution["P"] is None or learner.reads("P", solution["P"], 2)
+        marks = learner.frame.evaluate(MARKS)
+        for point in solution["points"]:
+            if point["in_image"]:
+                np.testing.assert_allclose(marks[point["name"]], point["pixel"], rtol=0, atol=0.006)
+        selected = PLACES[learner.params["selected"]]
+        np.testing.assert_allclose(learner.scene.world_pose("/selected")[:3, 3], selected, rtol=0, atol=1e-9)
+        return solution
+
+    return learner.until(said)
+
+
+def place_of(learner: Learner, node: str) -> tuple[float, float]:
+    """Pixel on the page of the middle of a node."""
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    return project(learner.scene.world_pose(node)[:3, 3], learner.sockets.camera, canvas)
+
+
+def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float) -> None:
+    """Press the mouse at a place, move it, and let go."""
+    mouse, (x, y) = learner.page.mouse, start
+    mouse.move(x - 3, y - 3)
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + dx, y + dy, steps=8)
+    mouse.up()
+
+
+def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed?fy=300")
+    learner.press_keys("fx", "ArrowRight")
+    agree(learner, fx=610, fy=305)
+    learner.choose("projection", "orthographic")
+    flat = agree(learner, projection="orthographic")
+    assert flat["P"][2] == [0, 0, 0, 1]
+    learner.type("tilt", "90")
+    agree(learner, tilt=90)
+    learner.frame.get_by_text("No picture: its scale comes from").wait_for()
+    learner.type("tilt", "-5")
+    before = agree(learner, tilt=-5)
+    learner.reload()
+    assert agree(learner, fx=610, fy=305, tilt=-5, projection="orthographic") == before
+    learner.press("Reset")
+    agree(learner, fx=600, fy=300, tilt=0, projection="perspective")
+
+
+def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed")
+    frame = learner.frame
+    agree(learner, selected="roof-near")
+    button = frame.get_by_role("button", name="Left cube, corner", exact=True)
+    button.scroll_into_view_if_needed()
+    button.hover()
+    learner.until(lambda: sorted(frame.evaluate(LIT)) == [["TR", "cube-left"], ["g", "cube-left"]])
+    learner.until(lambda: learner.scene.visible("/lit"))
+    np.testing.assert_allclose(learner.scene.world_pose("/lit")[:3, 3], PLACES["cube-left"])
+    assert learner.params["selected"] == "roof-near", "pointing selects nothing"
+
+    button.focus()
+    learner.page.keyboard.press("Enter")
+    agree(learner, selected="cube-left")
+    focused = "document.activeElement.closest('[data-link]')?.dataset.link"
+    learner.until(lambda: frame.evaluate(focused) == "cube-left")
+
+    frame.locator('svg [data-link="roof-far"] .s3-spot').click()
+    agree(learner, selected="roof-far")
+    x, y = place_of(learner, "/points/far-post")
+    learner.page.mouse.move(x - 2, y)
+    learner.page.mouse.click(x, y)
+    agree(learner, selected="far-post")
+    pressed = frame.locator('[data-link="far-post"] button[aria-pressed="true"]')
+    assert pressed.count() == 1
+
+
+def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed")
+    agree(learner, pan=0)
+    x, y = place_of(learner, "/eye")
+    pull(learner, (x, y), -20, -16)
+    learner.until(lambda: np.testing.assert_allclose(place_of(learner, "/eye"), [x - 20, y - 16], atol=3))
+    solution = agree(learner, pan=0, tilt=0)
+    assert np.linalg.norm(np.subtract(solution["center"], [0, -4, 1.2])) > 0.1
+    np.testing.assert_allclose(
+        learner.scene.world_pose("/eye")[:3, 3] - (0, 0, LIFT), solution["center"], rtol=0, atol=1e-6
+    )
+    center = solution["center"]
+    x, y = place_of(learner, "/look")
+    pull(learner, (x, y), -25, -10)
+    learner.until(lambda: learner.params["pan"] != 0)
+    solution = agree(learner, position=center, roll=0)
+    assert learner.params["pan"] > 0.0
+    grip = learner.scene.world_pose("/look")[:3, 3] - center
+    np.testing.assert_allclose(grip / np.linalg.norm(grip), solution["R"][2], rtol=0, atol=1e-9)
+
+    handle = learner.frame.locator("[data-handle=principal]")
+    handle.focus()
+    learner.page.keyboard.press("Shift+ArrowRight")
+    agree(learner, cx=330)
+
+
+def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed")
+    wanted = agree(learner)["subject"]["height"]
+    since = len(learner.sockets.told)
+    learner.press("Dolly zoom")
+    learner.until(lambda: learner.params["fx"] < 301)
+    end = agree(learner)
+    told = [m["params"] for m in learner.sockets.told[since:] if m["type"] == "state"]
+    assert len({params["fx"] for params in told}) > 2, "it moves through many states"
+    for params in told:
+        assert abs(height(params) - wanted) < 0.5
+    assert end["center"][1] > -1.5
+    learner.press("Look at the subject")
+    learner.until(lambda: np.testing.assert_allclose(agree(learner)["subject"]["pixel"], [320, 240], atol=1e-6))
+
+
+def height(params: dict[str, Any]) -> float:
+    """Pixels between ground and ridge of the house, seen by a level camera."""
+    _, y, z = params["position"]
+    assert params["pan"] == params["tilt"] == params["roll"] == 0
+    rows = [params["fy"] * (z - end[2]) / (end[1] - y) for end in SUBJECT]
+    return float(rows[0] - rows[1])
