@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from geometry.camera import aim
-from sims.camera.model import CameraParams, Place
+from sims.camera.model import CameraParams
 from sims.camera.solve import LIFT, camera_of
-from sims.camera.world import MIDDLE, SUBJECT
+from sims.camera.world import MIDDLE, SUBJECT, Place
 from sims.kit.sim import Step
 
 LEGS = 12

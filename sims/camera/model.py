@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Self
 
+import numpy as np
+import numpy.typing as npt
+
 from geometry.arrays import Array
 from sims.camera.world import NAMES, TITLES, Name, Place
 from sims.kit.params import Params, choice, number, switch, vector
@@ -109,7 +112,7 @@ class CameraSolution:
     """`name`, `role`, `homogeneous`, `pixel` and `in_image` for each direction of the street."""
     wires: Array
     """Edges (n, 2, 2) in the picture, in pixels, cut off at its frame and at the camera's plane."""
-    shown: Array
+    shown: npt.NDArray[np.intp]
     """Numbers (n,) of those edges in the world."""
     frustum: Frustum | None
     reach: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry.arrays import Array
 from sims.camera.model import CameraParams, CameraSolution, Frustum
@@ -126,7 +127,7 @@ def _box(near: Array, far: Array) -> Array:
     return edges
 
 
-def _all_wires(f: Frustum, shown: Array) -> Array:
+def _all_wires(f: Frustum, shown: npt.NDArray[np.intp]) -> Array:
     """A piece for each edge of the world; those that aren't in the picture have no length."""
     pieces = np.empty((len(ROLES), 2, 3))
     pieces[:] = f.corners[0]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry import quaternion
 from geometry.affine_camera import AffineCamera
@@ -126,7 +127,7 @@ def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
     return tuple(found)
 
 
-def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, Array]:
+def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, npt.NDArray[np.intp]]:
     """Pixels of what is followed (n, 2), edges in the picture (m, 2, 2), and their numbers in the world (m,)."""
     if eye is None:
         return np.full((len(FOLLOWED), 2), np.nan), np.empty((0, 2, 2)), np.empty(0, int)

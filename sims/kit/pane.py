@@ -9,8 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from html import escape
 
+safe = lru_cache(maxsize=1024)(escape)
+"""`escape` for words that come again in each picture."""
 Point = Sequence[float]
 INSET = 14.0
 """Pixels from the picture's edge at which what lies outside is marked."""
@@ -111,13 +114,13 @@ class Picture:
         ring = '<circle class="s3-ring" r="13"/>' if chosen else ""
         side, anchor = (-18, "end") if at[0] > 0.6 * self.width else (18, "start")
         words = (
-            f'<text x="{side}" y="-14" text-anchor="{anchor}" class="s3-halo" fill="var(--held)">{escape(label)}</text>'
+            f'<text x="{side}" y="-14" text-anchor="{anchor}" class="s3-halo" fill="var(--held)">{safe(label)}</text>'
             if label
             else ""
         )
         self._over.append(
-            f'<g data-link="{escape(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
-            f'<title>{escape(title)}</title><circle class="s3-reach" r="16"/>{ring}'
+            f'<g data-link="{safe(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
+            f'<title>{safe(title)}</title><circle class="s3-reach" r="16"/>{ring}'
             f'<circle class="s3-spot" r="5" fill="var(--{"held" if chosen else role})"/>{words}</g>'
         )
 
@@ -138,14 +141,14 @@ class Picture:
         down = 9.0 - (44.0 if far else 32.0) * dy if anchor == "middle" else beside
         text = (
             f'<text x="0" y="{down:.1f}" text-anchor="{anchor}" class="s3-halo"'
-            f' fill="var(--{role})">{escape(words)}{" ∞" if far else ""}</text>'
+            f' fill="var(--{role})">{safe(words)}{" ∞" if far else ""}</text>'
             if words
             else ""
         )
-        linked = f' data-link="{escape(link)}"' if link else ""
+        linked = f' data-link="{safe(link)}"' if link else ""
         kind = "s3-point s3-selected" if chosen else "s3-point"
         self._over.append(
-            f'<g{linked} class="{kind}" transform="translate({x:.2f} {y:.2f})"><title>{escape(title or words)}</title>'
+            f'<g{linked} class="{kind}" transform="translate({x:.2f} {y:.2f})"><title>{safe(title or words)}</title>'
             f'<path class="s3-spot" d="{head}" fill="var(--{role})"'
             f' transform="rotate({math.degrees(math.atan2(dy, dx)):.1f})"/>{text}</g>'
         )

@@ -106,8 +106,8 @@ class Table:
         return f'<table class="s3-table"><caption>{escape(self.note)}</caption><tr>{top}</tr>{rest}</table>'
 
     def _row(self, k: int, cells: Sequence[str]) -> str:
-        numbers = "".join([f"<td>{escape(cell)}</td>" for cell in cells[1:]])
-        name = escape(cells[0])
+        name, *rest = escape("\n".join(cells)).split("\n")  # in one go: a table has many cells
+        numbers = "".join([f"<td>{cell}</td>" for cell in rest])
         if not self.links:
             return f'<tr><th scope="row">{name}</th>{numbers}</tr>'
         chosen = self.links[k] == self.selected

@@ -137,7 +137,7 @@ def test_what_is_kept_is_the_part_inside(camera: Camera, given_segments: Array) 
         kept = samples[inside(planes, samples) > 1e-9 * size]
         if len(kept):
             assert exists
-            along, length = part[1] - part[0], max(np.linalg.norm(part[1] - part[0]), 1e-12)
+            along, length = part[1] - part[0], max(math.dist(part[1], part[0]), 1e-12)
             at = (kept - part[0]) @ along / length**2
             assert at.min() > -1e-6 / length
             assert at.max() < 1 + 1e-6 / length
@@ -152,20 +152,19 @@ def test_ends_that_are_inside_stay_exactly_where_they_are(camera: Camera, given_
 
 
 def test_a_segment_through_the_cameras_plane_ends_there() -> None:
-    parts, exist = clip_segments(
-        [[[0.0, 0.0, -1.0], [0.0, 1.0, 3.0]], [[0, 0, -2], [0, 0, -1]]], [[0.0, 0.0, 1.0, 0.0]]
-    )
+    both = np.array([[[0.0, 0.0, -1.0], [0.0, 1.0, 3.0]], [[0.0, 0.0, -2.0], [0.0, 0.0, -1.0]]])
+    parts, exist = clip_segments(both, [[0.0, 0.0, 1.0, 0.0]])
     np.testing.assert_allclose(parts[0], [[0.0, 0.25, 0.0], [0.0, 1.0, 3.0]], rtol=0, atol=EXACT)
     assert exist.tolist() == [True, False]
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_a_segment_that_is_not_finite_is_left_out_alone(value: float) -> None:
-    good = [[0.0, 0.0, 1.0], [0.0, 1.0, 2.0]]
+    good = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 2.0]])
     for k in range(3):
-        bad = np.array(good)
+        bad = good.copy()
         bad[1, k] = value
-        parts, exist = clip_segments([good, bad], [[0.0, 0.0, 1.0, 0.0]])
+        parts, exist = clip_segments(np.stack([good, bad]), [[0.0, 0.0, 1.0, 0.0]])
         assert exist.tolist() == [True, False]
         np.testing.assert_array_equal(parts[0], good)
         assert np.isnan(parts[1]).all()
