@@ -106,14 +106,15 @@ def clip_segments(segments: npt.ArrayLike, planes: npt.ArrayLike) -> tuple[Array
     """
     segments, planes = as_array("segments", segments, 2, 3), as_finite_array("planes", planes, 4)
     with np.errstate(all="ignore"):
-        distances = segments @ planes[:, :3].T + planes[:, 3]
+        flat = segments.reshape(-1, 3).dot(planes[:, :3].T) + planes[:, 3]
+        distances = flat.reshape(len(segments), 2, len(planes))
         before, after = distances[:, 0], distances[:, 1]
         crossing = before / (before - after)
         outside = distances < 0.0
         enter = np.where(outside[:, 0], crossing, 0.0).max(axis=1, initial=0.0)
         leave = np.where(outside[:, 1], crossing, 1.0).min(axis=1, initial=1.0)
         exists = (enter <= leave) & ~(outside[:, 0] & outside[:, 1]).any(axis=1)
-        exists &= np.isfinite(distances.sum(axis=(1, 2)) + segments.sum(axis=(1, 2)))
+        exists &= np.isfinite(segments.reshape(-1, 6).sum(axis=1))
         start, end = segments[:, 0], segments[:, 1]
         along = end - start
         first = start + enter[:, None] * along

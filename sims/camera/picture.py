@@ -16,6 +16,9 @@ from sims.kit.readout import THIN, figure
 WIDTHS = {"ink": 1.6, "x": 1.6, "y": 2.0, "z": 2.4}
 ROLE: Any = np.array([list(WIDTHS).index(role) for role in ROLES])
 ARROW = 70.0
+TOWARDS = {"across": ("eave-near-left", "wall-near-left"), "along": ("roof-far", "wall-far-right"),
+           "up": ("eave-near-left", "eave-far-right")}  # fmt: skip
+"""Ends of edges that are drawn on to where they meet."""
 
 
 def panes(p: CameraParams, s: CameraSolution, palette: Palette) -> Sequence[Pane]:
@@ -27,7 +30,7 @@ def panes(p: CameraParams, s: CameraSolution, palette: Palette) -> Sequence[Pane
     _pixel_axes(picture)
     if p.show_vanishing:
         for meet in s.vanishing:
-            _vanishing(picture, meet)
+            _vanishing(picture, s, meet)
     for point in s.points:
         _point(picture, point, chosen=point["name"] == p.selected)
     if s.frustum is not None:
@@ -41,10 +44,12 @@ def _pixel_axes(picture: Picture) -> None:
         picture.text(at, letter)
 
 
-def _vanishing(picture: Picture, meet: Any) -> None:
-    """A cross where parallels meet, or a mark at the border."""
+def _vanishing(picture: Picture, s: CameraSolution, meet: Any) -> None:
+    """A cross where parallels meet, with two edges drawn on to it, or a mark at the border."""
     if meet["in_image"]:
         u, v = meet["pixel"]
+        ends = [s.point(name)["pixel"] for name in TOWARDS[meet["name"]]]
+        picture.strokes([(*end, u, v) for end in ends if end], meet["role"], width=1, dash="3 5")
         picture.cross(meet["pixel"], meet["role"])
         picture.text((u, v - 18.0), meet["name"], meet["role"], anchor="middle", size=24)
     elif meet["homogeneous"] is not None:

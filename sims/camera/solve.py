@@ -149,7 +149,8 @@ def _frustum(
     flat = np.concatenate([CORNERS, np.reshape(pixels, (-1, 2)), meets, [chosen["pixel"] or (math.nan, math.nan)]])
     placed = _placed(camera, np.concatenate([flat, wires.reshape(-1, 2)]), scale or depth, depth)
     corners, dots, rest = placed[:4], placed[4 : 4 + len(seen)], placed[4 + len(seen) :]
-    targets = in_camera[seen]
+    targets, meet = in_camera[seen], rest[:3]
+    meet[np.isnan(meet[:, 0])] = 0.0
     starts = np.zeros_like(targets) if scale is None else targets * (1.0, 1.0, 0.0)
     return Frustum(
         depth=depth,
@@ -160,14 +161,15 @@ def _frustum(
         dots=dots,
         rays=np.stack([starts, targets], axis=1),
         chosen=_sight(rest[3], np.array(chosen["camera"]), scale) if chosen["pixel"] else None,
-        meet=np.nan_to_num(rest[:3]),
+        meet=meet,
     )
 
 
 def _placed(camera: Camera, pixels: Array, unit: float, depth: float) -> Array:
     """Pixels (n, 2) on the picture as it stands in the scene (n, 3)."""
     placed = np.empty((len(pixels), 3))
-    placed[:, :2] = unit * camera.normalized(pixels)
+    inverse = unit * camera.K_inverse[:2]
+    placed[:, :2] = pixels @ inverse[:, :2].T + inverse[:, 2]
     placed[:, 2] = depth
     return placed
 
