@@ -6,14 +6,17 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable, Coroutine
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
 from app import motion, session
 from app.session import Full, Session, Sessions, new_key, refusal, room_of
 from sims.kit.params import Params
+from sims.kit.sim import Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
 
 
@@ -390,6 +393,26 @@ def test_easing_starts_and_stops_gently() -> None:
     assert [motion.eased(f) for f in (0.0, 0.5, 1.0)] == [0.0, 0.5, 1.0]
     assert motion.eased(0.1) < 0.1
     assert motion.eased(0.9) > 0.9
+
+
+def test_an_even_leg_keeps_one_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+
+    async def sleep(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    clock = SimpleNamespace(get_running_loop=lambda: SimpleNamespace(time=lambda: now), sleep=sleep)
+    monkeypatch.setattr(motion, "asyncio", clock)
+
+    async def sizes(even: bool) -> list[float]:
+        leg = iter([Step({"size": 100.0}, 1.0, even=even)])
+        return [changes["size"] async for changes in motion.play(leg, ToyParams, reduced=False)]
+
+    start = ToyParams().size
+    speeds = np.diff([start, *asyncio.run(sizes(even=True))[1:-1]])
+    np.testing.assert_allclose(speeds, (100.0 - start) * motion.FRAME, rtol=1e-9)
+    assert np.ptp(np.diff(asyncio.run(sizes(even=False)))) > 1.0
 
 
 # ---- what the page is told
