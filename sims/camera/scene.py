@@ -17,6 +17,7 @@ BODY = 1.6
 """Times its usual size."""
 ABOVE = 0.2
 NAMED = {"house": "roof-near", "near post": "near-post", "far post": "far-post"}
+HINTS = {"eye": "move", "look": "aim"}
 SIGHTS = ("x", "y", "z")
 NOTHING: Array = np.zeros((4, 3))
 
@@ -44,6 +45,7 @@ class CameraScene:
         self.stand = stage.lines("/stand", np.zeros((2, 3)), "ghost", width=1.2)
         self.eye = stage.grip("/eye", GRIP)
         self.look = stage.grip("/look", GRIP)
+        self.hints = [stage.label(f"/{name}/hint", words, (0.0, 0.0, 0.2)) for name, words in HINTS.items()]
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         x, y, _ = p.position
@@ -56,6 +58,8 @@ class CameraScene:
         self.selected_label.text(TITLES[p.selected].lower())
         for point, label in self.labels.items():
             label.show(p.show_labels and p.selected != point)
+        for hint in self.hints:
+            hint.show(p.show_labels)
         self.lit.show(False)
 
     def point(self, name: str) -> None:
@@ -84,7 +88,7 @@ class Eye:
         self.dot = stage.ball("/camera/dot", 0.024, "held")
         self.ray = stage.lines("/camera/ray", np.zeros((2, 3)), "held", width=3.5)
         self.meets = stage.strokes("/camera/vanishing", SIGHTS, width=2.5)
-        self.label = stage.label("/camera/label", "picture", anchor="bottom-left")
+        self.label = stage.label("/camera/label", "picture", anchor="top-center")
         self._shown: Frustum | None = None
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
@@ -112,7 +116,7 @@ class Eye:
         self.dots.points(f.dots)
         self.rays.pieces(f.rays)
         self.meets.move(np.stack([np.zeros((3, 3)), 1.5 * f.meet], axis=1))
-        self.label.pose(position=f.corners[0].tolist())
+        self.label.pose(position=f.corners[3].tolist())
         if f.chosen is not None:
             start, dot, point = f.chosen.tolist()
             self.dot.pose(position=dot)
