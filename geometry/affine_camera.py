@@ -45,16 +45,6 @@ class AffineCamera:
             u, v = (fx * x + skew * y) / self.depth + cx, fy * y / self.depth + cy
             return stack(u + nothing, v + nothing), np.asarray(depth)
 
-    def frame_corners(self, width: float, height: float) -> Array:
-        """Return x and y (4, 2) in camera axes, in metres, of the corners of a picture of a size in pixels.
-
-        The lines of sight through them are parallel to z: together they bound the box that the picture shows.
-        In the picture's order: top left, top right, bottom right, bottom left.
-        """
-        right, bottom = as_number("width", width, above=0.0) - 0.5, as_number("height", height, above=0.0) - 0.5
-        corners = [[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]]
-        return self.depth * self.perspective.normalized(corners)
-
 
 def weak_perspective(camera: Camera, points: npt.ArrayLike) -> AffineCamera:
     """Return the affine camera that is nearest to a perspective one about points (n, 3): at their mean depth.

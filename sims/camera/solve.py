@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry import quaternion
-from geometry.affine_camera import AffineCamera
+from geometry.affine_camera import AffineCamera, weak_perspective
 from geometry.arrays import Array
 from geometry.camera import Camera, pan_tilt_roll
 from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
@@ -84,17 +84,24 @@ def _eye(p: CameraParams, camera: Camera, scale: float | None) -> tuple[Eye | No
         return camera, None
     if scale is None or scale < LEAST_DEPTH:
         return None, None
-    return AffineCamera(camera, scale), scale
+    return weak_perspective(camera, POINTS) if p.projection == "weak" else AffineCamera(camera, scale), scale
+
+
+def _inside(u: float, v: float) -> bool:
+    """Whether a pixel is in the picture; one that doesn't exist (NaN) isn't."""
+    return -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
 
 
 def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
     found = []
     for name, axes, (u, v) in zip(NAMES, in_camera.tolist(), pixels.tolist(), strict=True):
         pixel = (u, v) if u == u else None
-        inside = pixel is not None and -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
         found.append(
-            {"name": name, "world": PLACES[name], "camera": axes, "pixel": pixel, "depth": axes[2], "in_image": inside}
-        )
+            {
+                "name": name, "world": PLACES[name], "camera": axes, "depth": axes[2], "pixel": pixel,
+                "in_image": _inside(u, v),
+            }
+        )  # fmt: skip
     return tuple(found)
 
 
@@ -117,11 +124,10 @@ def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
     homogeneous, pixels = vanishing_points(P, WAYS)
     for (name, (role, _)), place, (u, v) in zip(DIRECTIONS.items(), homogeneous.tolist(), pixels.tolist(), strict=True):
         exists = place[0] == place[0]
-        inside = u == u and -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
         found.append(
             {
                 "name": name, "role": role, "homogeneous": place if exists else None,
-                "pixel": (u, v) if u == u else None, "in_image": inside,
+                "pixel": (u, v) if u == u else None, "in_image": _inside(u, v),
             }
         )  # fmt: skip
     return tuple(found)

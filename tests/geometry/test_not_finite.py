@@ -7,7 +7,19 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry import Array, GeometryError, epipolar, euler, gimbal, quaternion, rotations, se3, triangulation
+from geometry import (
+    Array,
+    GeometryError,
+    epipolar,
+    euler,
+    gimbal,
+    projection,
+    quaternion,
+    rotations,
+    se3,
+    triangulation,
+)
+from geometry.affine_camera import AffineCamera
 from geometry.camera import Camera, parallel_rig
 
 LEFT, RIGHT = parallel_rig(0.6, 600.0)
@@ -46,6 +58,8 @@ CASES: dict[str, tuple[Function, Array]] = {
     "se3.from_homogeneous": (lambda h: se3.from_homogeneous(h)[0], q),
     "camera.project": (lambda p: CAMERA.project(p)[0], in_view),
     "camera.pixel_ray": (lambda p: CAMERA.pixel_ray(p)[1], uv),
+    "affine_camera.project": (lambda p: AffineCamera(CAMERA, 2.0).project(p)[0], in_view),
+    "vanishing_points": (lambda d: projection.vanishing_points(CAMERA.P, d)[0], in_view),
     "epipolar_line_right": (lambda p: epipolar.epipolar_line_right(F, p), uv),
     "epipolar_line_left": (lambda p: epipolar.epipolar_line_left(F, p), uv),
     "triangulate_dlt": (lambda p: triangulation.triangulate_dlt(LEFT, RIGHT, p, [200.0, 200.0]).point, uv),

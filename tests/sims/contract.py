@@ -56,6 +56,7 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
     "gimbal-lock": (
         "yaw=-30&pitch=90&roll=45.5",
         {"yaw": -30.0, "pitch": 90.0, "roll": 45.5},
+    ),
     "camera": (
         "fx=800&fy=700&cx=300&cy=200&skew=10&position=1,-5.5,2&pan=20&tilt=-10&roll=5&projection=weak"
         "&show_rays=0&show_frustum=0",
