@@ -71,12 +71,12 @@ def _point(picture: Picture, point: Any, *, chosen: bool) -> None:
 
 
 def _note(p: CameraParams, s: CameraSolution) -> str:
+    """Of the chosen point; short, so that the picture below keeps its place."""
     point = s.point(p.selected)
-    name = TITLES[p.selected].lower()
     if s.frustum is None:
         return "⚠ no scale, no picture"
     if point["pixel"] is None:
-        return f"{name}: ⚠ behind the camera"
+        return f"⚠ {TITLES[p.selected].lower()} is behind"
     u, v = point["pixel"]
     where = "" if point["in_image"] else ", outside"
-    return f"{name} ({figure(u, 1)}, {figure(v, 1)}){THIN}px{where}"
+    return f"({figure(u, 1)}, {figure(v, 1)}){THIN}px{where}"
