@@ -36,10 +36,12 @@ T = TypeVar("T")
 PATIENCE = 120.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
 OPTIONS = ("view", "controls", "theme")
-# What viser's client makes the browser say: at each start, and at each drag in the scene.
+# What viser's client makes the browser say: at each start, at each drag in the scene, and, without a GPU, where there
+# are nodes to click.
 VISERS_OWN_WORDS = (
     "THREE.Clock: This module has been deprecated",
     "Unable to preventDefault inside passive event listener invocation",
+    "KHR_parallel_shader_compile extension not supported",
 )
 
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
