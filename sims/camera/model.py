@@ -67,14 +67,12 @@ class CameraParams(Params):
         "roof-near", title="Point", description="The point that is worked through; click one to choose it",
         labels=TITLES,
     )  # fmt: skip
-    show_rays: bool = switch(
-        True, title="Rays", description="From the points in the picture to the camera", group="Show"
-    )
-    show_frustum: bool = switch(True, title="Frustum", description="What the picture can show of space", group="Show")
+    show_rays: bool = switch(True, title="Rays", description="From the points in the picture to the camera")
+    show_frustum: bool = switch(True, title="Frustum", description="What the picture can show of space")
     show_vanishing: bool = switch(
-        True, title="Vanishing points", description="Where the parallels of street and house meet", group="Show"
+        True, title="Vanishing points", description="Where the parallels of street and house meet"
     )
-    show_labels: bool = switch(True, title="Labels", description="Names of things in the scene", group="Show")
+    show_labels: bool = switch(True, title="Labels", description="Names of things in the scene")
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         moving = [name for name in ("fx", "fy") if name in changes]

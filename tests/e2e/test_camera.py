@@ -101,7 +101,7 @@ def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom:
     learner.page.mouse.click(x, y)
     agree(learner, selected="far-post")
     pressed = frame.locator('[data-link="far-post"] button[aria-pressed="true"]')
-    assert pressed.count() == 1
+    learner.until(lambda: pressed.count() == 1)
 
 
 def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> None:
