@@ -6,13 +6,22 @@ from typing import Any
 
 from sims.camera import SIM as CAMERA
 from sims.coordinate_frames import SIM as COORDINATE_FRAMES
+from sims.epipolar import SIM as EPIPOLAR
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.gimbal_lock import SIM as GIMBAL_LOCK
 from sims.kit.sim import Sim
 from sims.transform_chain import SIM as TRANSFORM_CHAIN
 from sims.triangulation import SIM as TRIANGULATION
 
-SIMS: tuple[Sim[Any, Any], ...] = (COORDINATE_FRAMES, EULER_ANGLES, GIMBAL_LOCK, TRANSFORM_CHAIN, CAMERA, TRIANGULATION)
+SIMS: tuple[Sim[Any, Any], ...] = (
+    COORDINATE_FRAMES,
+    EULER_ANGLES,
+    GIMBAL_LOCK,
+    TRANSFORM_CHAIN,
+    CAMERA,
+    EPIPOLAR,
+    TRIANGULATION,
+)
 
 
 def by_slug(slug: str) -> Sim[Any, Any] | None:

@@ -157,6 +157,20 @@ document.addEventListener("pointerdown", (event) => {
   document.documentElement.classList.add("s3-holding");
 }, true);
 
+// A click anywhere in a picture that says so, or Enter on it, puts its handle there; the handle then takes the focus.
+function pick(ground, at) {
+  if (sim.watching) return;
+  focused = gripNamed(ground.dataset.pick);
+  moveTo(ground.dataset.pick, at, ground.closest("svg").dataset.pane);
+  held = null;
+}
+
+document.addEventListener("click", (event) => {
+  const svg = event.target.closest?.("svg[data-pane]");
+  const ground = svg?.querySelector("[data-pick]");
+  if (ground && !event.target.closest("[data-handle]")) pick(ground, place(event, svg));
+});
+
 document.addEventListener("pointermove", (event) => {
   if (held?.pointer !== event.pointerId) return;
   event.preventDefault();
@@ -195,6 +209,10 @@ document.addEventListener("keydown", (event) => {
   } else if ((event.key === "Enter" || event.key === " ") && event.target.matches?.("[aria-expanded].mantine-Paper-root")) {
     event.preventDefault();
     event.target.click();
+  } else if (event.target.matches?.("[data-pick]") && ["Enter", " "].includes(event.key)) {
+    event.preventDefault();
+    const { width, height } = event.target.closest("svg").viewBox.baseVal;
+    pick(event.target, { x: (width - 1) / 2, y: (height - 1) / 2 });
   } else if (event.key === "?" && !/^(INPUT|TEXTAREA)$/.test(event.target.tagName)) {
     showKeys();
   }
@@ -253,10 +271,16 @@ function markSliders() {
 
 let focused = null;
 
+// The handle of a name, or where it isn't there, the picture in which it can be put.
+function gripNamed(name) {
+  const handle = `[data-handle="${CSS.escape(name)}"]`;
+  return `${handle}, svg:not(:has(${handle})) [data-pick="${CSS.escape(name)}"]`;
+}
+
 document.addEventListener("focusin", (event) => {
-  const grip = event.target.closest?.("[data-handle]");
+  const grip = event.target.closest?.("[data-handle], [data-pick]");
   const row = event.target.closest?.("[data-link]");
-  focused = grip ? `[data-handle="${CSS.escape(grip.dataset.handle)}"]` : row ? `${linked(row)} button` : null;
+  focused = grip ? gripNamed(grip.dataset.handle ?? grip.dataset.pick) : row ? `${linked(row)} button` : null;
 });
 
 // At once, and not with the next picture: under software rendering that may be several keys away.
@@ -291,7 +315,8 @@ for (const kind of ["pointerover", "focusin"]) {
 
 document.addEventListener("click", (event) => {
   const node = event.target.closest?.("[data-link]");
-  if (node && !sim.watching) send({ type: "set", params: { selected: node.dataset.link } });
+  if (!node || sim.watching || node.closest("svg")?.querySelector("[data-pick]")) return;
+  send({ type: "set", params: { selected: node.dataset.link } });
 });
 
 let tidying = false;
@@ -382,6 +407,7 @@ function showKeys() {
     <tr><th scope="row"><kbd>Tab</kbd></th><td>next control or point</td></tr>
     <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> on a slider</th><td>one step</td></tr>
     <tr><th scope="row">arrow keys on a point in a picture</th><td>one pixel; with <kbd>Shift</kbd> ten, with <kbd>Alt</kbd> a tenth</td></tr>
+    <tr><th scope="row">click, or <kbd>Enter</kbd>, on a picture</th><td>choose a pixel, where the sim has something to say of it</td></tr>
     <tr><th scope="row">drag in the scene</th><td>turn the view; right button moves it, wheel zooms</td></tr>
     <tr><th scope="row">drag a ringed point</th><td>move it; with <kbd>Shift</kbd> along one axis</td></tr>
     <tr><th scope="row">point at, or click, a point or its row</th><td>light it up, or select it, everywhere</td></tr>

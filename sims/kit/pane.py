@@ -39,6 +39,7 @@ class Picture:
         self.width, self.height = width, height
         self._parts: list[str] = []
         self._over: list[str] = []
+        self._ground = 'class="s3-frame"'
 
     def line(self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "") -> None:
         """A straight stroke; `dash` as in SVG, `role` a colour of the palette."""
@@ -84,19 +85,32 @@ class Picture:
             f' stroke="var(--{role})" stroke-width="2" vector-effect="non-scaling-stroke"/>'
         )
 
-    def text(self, at: Point, words: str, role: str = "ink", *, anchor: str = "start", size: float = 26) -> None:
-        """Words, outlined in the page's colour so that they stay readable over lines."""
+    def text(
+        self, at: Point, words: str, role: str = "ink", *, anchor: str = "start", size: float = 26, fine: bool = False
+    ) -> None:
+        """Words, outlined in the page's colour so that they stay readable over lines; `fine` ones go in small panes."""
+        kind = "s3-halo s3-fine" if fine else "s3-halo"
         self._over.append(
             f'<text x="{at[0]:.2f}" y="{at[1]:.2f}" fill="var(--{role})" font-size="{size}" text-anchor="{anchor}"'
-            f' class="s3-halo">{escape(words)}</text>'
+            f' class="{kind}">{escape(words)}</text>'
         )
 
-    def handle(self, name: str, at: Point, label: str, letter: str) -> None:
-        """A point that pointer and keyboard can move; the session hears of it under `name`."""
+    def pickable(self, name: str, label: str) -> None:
+        """Let people choose a place by a click, or Enter: the session hears of it as of a handle of that name."""
+        self._ground = (
+            f'class="s3-frame" data-pick="{name}" tabindex="0" role="button" aria-label="{escape(label)}:'
+            ' click a place, or press Enter for the middle."'
+        )
+
+    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "") -> None:
+        """A point that pointer and keyboard can move; the session hears of it under `name`.
+
+        `where` says its place where that isn't the pixel.
+        """
         self._over.append(
             f'<g data-handle="{name}" data-x="{float(at[0])!r}" data-y="{float(at[1])!r}" tabindex="0"'
             f' role="application" aria-roledescription="movable point"'
-            f' aria-label="{escape(label)}: {at[0]:.1f}, {at[1]:.1f} pixels.'
+            f' aria-label="{escape(label)}: {escape(where) or f"{at[0]:.1f}, {at[1]:.1f} pixels"}.'
             f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
             '<circle class="s3-grab" r="44"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
             f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
@@ -156,7 +170,7 @@ class Picture:
     def pane(self, note: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
-        frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" class="s3-frame"/>'
+        frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
         tip = (
             f'<marker id="{name}-tip" viewBox="0 0 10 10" refX="8" refY="5" markerWidth="5" markerHeight="5"'
             ' orient="auto-start-reverse"><path d="M0 0L10 5L0 10z" fill="context-stroke"/></marker>'

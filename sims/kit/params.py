@@ -1,7 +1,7 @@
 """The state of a sim: one frozen pydantic model, and its two spellings (query string and JSON).
 
-A field is declared with `number`, `optional`, `choice`, `switch`, `vector`, `numbers` or `letters`; what is said
-there feeds the live controls, the link, the JSON schema, validation and the tests.
+A field is declared with `number`, `optional`, `choice`, `switch`, `vector`, `numbers`, `letters` or `text`; what is
+said there feeds the live controls, the link, the JSON schema, validation and the tests.
 """
 
 from __future__ import annotations
@@ -268,6 +268,17 @@ def vector(
     return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
+def text(*, title: str, description: str, pattern: str, allowed: str, group: str = "") -> Any:
+    """A few characters in a format of their own, or None, the default; `allowed` says the format to people.
+
+    It has no control: something else sets it, such as a click on a picture.
+    """
+    return Field(
+        None, pattern=pattern, title=title, description=description,
+        json_schema_extra={"allowed": allowed, "group": group, "control": "none"},
+    )  # fmt: skip
+
+
 def extra(field: FieldInfo) -> dict[str, Any]:
     """What `number`, `choice`, … said about the control."""
     return cast(dict[str, Any], field.json_schema_extra or {})
@@ -376,6 +387,8 @@ def clipped(text: Any, length: int = 80) -> str:
 
 def allowed_values(field: FieldInfo) -> str:
     """In words: what a field may be."""
+    if "allowed" in extra(field):
+        return str(extra(field)["allowed"])
     kind = extra(field).get("control")
     if kind == "switch":
         return "1 or 0"

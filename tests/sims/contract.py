@@ -85,6 +85,22 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
             "swap": 2,
         },
     ),
+    "epipolar": (
+        "left=-0.5,0,1.2&right=0.5,0.1,1&left_pan=-10&right_pan=12.5&focal=700&point=0.2,3.5,1.1&points=9&show_plane=0"
+        "&show_all_lines=1&pick=right:300,200.5",
+        {
+            "left": [-0.5, 0.0, 1.2],
+            "right": [0.5, 0.1, 1.0],
+            "left_pan": -10.0,
+            "right_pan": 12.5,
+            "focal": 700.0,
+            "point": [0.2, 3.5, 1.1],
+            "points": 9,
+            "show_plane": False,
+            "show_all_lines": True,
+            "pick": "right:300,200.5",
+        },
+    ),
     "triangulation": (
         "baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
         {

@@ -1,0 +1,123 @@
+"""The left and the right picture: points, epipolar lines, epipoles, and the pixel that is picked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from geometry.arrays import Array
+from sims.epipolar.drawn import in_picture
+from sims.epipolar.model import CENTER, HEIGHT, LAST, WIDTH, EpipolarParams, Pixel, Side
+from sims.epipolar.plan import plan
+from sims.epipolar.solution import EpipolarSolution
+from sims.epipolar.words import epipole_in_words
+from sims.kit.palette import Palette
+from sims.kit.pane import Pane, Picture
+from sims.kit.readout import figure
+
+ARROW = 70.0
+"""Pixels that an arrow at the border is long."""
+
+
+def panes(p: EpipolarParams, s: EpipolarSolution, palette: Palette) -> Sequence[Pane]:
+    """Both pictures, and the plan."""
+    pictures = _picture(p, s, "left"), _picture(p, s, "right")
+    return (*pictures, plan(p, s)) if p.show_top else pictures
+
+
+def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
+    left = side == "left"
+    mark = "" if left else "′"
+    line, lines = (s.line_left, s.lines_left) if left else (s.line_right, s.lines_right)
+    pixel, pixels = (s.pixel_left, s.pixels_left) if left else (s.pixel_right, s.pixels_right)
+    epipole, at = (s.epipole_left, s.epipole_left_pixel) if left else (s.epipole_right, s.epipole_right_pixel)
+    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
+    picture.pickable(f"pick_{side}", f"{side.capitalize()} picture")
+    _coordinates(picture)
+    _lines(picture, p, s, side, line, lines)
+    _points(picture, p, s, side, pixels)
+    if epipole is not None:
+        _epipole(picture, epipole, at, f"e{mark}")
+    if pixel is not None:
+        _held(picture, pixel, side, f"p{mark}")
+    if s.picked is not None and s.picked.side == side:
+        picture.handle(f"pick_{side}", s.picked.pixel, "Picked pixel", "")
+    return picture.pane(_note(s, pixel, at, mark))
+
+
+def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark: str) -> str:
+    point = "no pixel" if pixel is None else f"p{mark} {figure(pixel[0], 1)}, {figure(pixel[1], 1)}"
+    return f"{point}; no e{mark}" if s.F is None else f"{point}; e{mark} {epipole_in_words(epipole)}"
+
+
+def _coordinates(picture: Picture) -> None:
+    """Columns run to the right and rows down, from the top left."""
+    picture.text((8, 26), "0, 0", "ghost", size=22, fine=True)
+    picture.text((WIDTH - 10, 26), f"u {LAST[0]:.0f}", "ghost", anchor="end", size=22, fine=True)
+    picture.text((8, HEIGHT - 12), f"v {LAST[1]:.0f}", "ghost", size=22, fine=True)
+
+
+def _lines(
+    picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, line: Array | None, lines: Array | None
+) -> None:
+    other = "right" if side == "left" else "left"
+    if p.show_all_lines and lines is not None:
+        for each in lines[1:].tolist():
+            picture.homogeneous_line(each, other, width=1)
+    if line is not None:
+        picture.homogeneous_line(line.tolist(), other, width=2.5, dash="7 5")
+    estimated = s.estimate.line_left if side == "left" else s.estimate.line_right
+    if p.noise > 0.0 and estimated is not None:
+        picture.homogeneous_line(estimated.tolist(), "ink", width=1.5, dash="2 4")
+    if s.picked is not None and s.picked.side != side and s.picked.line is not None:
+        picture.homogeneous_line(s.picked.line.tolist(), "held", width=3.5)
+
+
+def _points(picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, pixels: Array) -> None:
+    for k, (u, v) in enumerate(pixels.tolist()[1:], start=2):
+        if in_picture(u, v):
+            picture.dot((u, v), side, 5)
+            picture.text((u + 9, v - 7), f"{k}", side, size=20, fine=True)
+    if p.noise > 0.0:
+        measured = s.estimate.measured_left if side == "left" else s.estimate.measured_right
+        for u, v in measured.tolist():
+            if in_picture(u, v):
+                picture.cross((u, v), "ink", 7)
+
+
+def _held(picture: Picture, pixel: Pixel, side: Side, letter: str) -> None:
+    """The point that can be moved in its picture, or in which direction it is outside."""
+    if in_picture(*pixel):
+        picture.handle(f"{side}_pixel", pixel, f"3D point in the {side} picture", letter)
+    else:
+        _toward(picture, (pixel[0] - CENTER[0], pixel[1] - CENTER[1]), "held", letter)
+
+
+def _epipole(picture: Picture, epipole: Array, at: Pixel | None, letter: str) -> None:
+    if at is not None and in_picture(*at):
+        picture.dot(at, "ink", 9, hollow=True)
+        picture.dot(at, "ink", 3)
+        picture.text((at[0] + 16, at[1] + 30), letter)
+        return
+    u, v, _ = epipole.tolist()
+    along = (u, v) if at is None else (at[0] - CENTER[0], at[1] - CENTER[1])
+    _toward(picture, along, "ink", letter if at is not None else f"{letter} ∞")
+    if at is None:  # parallel lines meet at both their ends
+        _toward(picture, (-along[0], -along[1]), "ink", "")
+
+
+def _toward(picture: Picture, along: Pixel, role: str, words: str) -> None:
+    """An arrow at the border to what is outside, seen from the middle of the picture."""
+    length = math.hypot(*along)
+    x, y = along[0] / length, along[1] / length
+    room = min(
+        (0.5 * size - 4.0) / abs(part) for part, size in ((x, WIDTH), (y, HEIGHT)) if abs(part) > 1e-9
+    )  # fmt: skip
+    tip, tail = ((CENTER[0] + t * x, CENTER[1] + t * y) for t in (room, room - ARROW))
+    picture.arrow(tail, tip, role, width=2.5)
+    picture.text((tail[0] - 24 * x, tail[1] - 18 * y + 9), words, role, anchor=_anchor(x))
+
+
+def _anchor(x: float) -> str:
+    """Words end where the arrow begins."""
+    return "end" if x > 0.5 else "start" if x < -0.5 else "middle"

@@ -1,0 +1,76 @@
+"""The plan: the scene from above, X to the right and Y up, in which cameras and the 3D point can be moved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from sims.epipolar.drawn import EyeDrawn, distance
+from sims.epipolar.model import HEIGHT, WIDTH, EpipolarParams, Pixel, Side
+from sims.epipolar.solution import EpipolarSolution
+from sims.kit.pane import Pane, Picture
+from sims.kit.readout import figure
+
+SCALE = 62.0
+"""Pixels a metre."""
+ORIGIN: Pixel = (320.0, 390.0)
+
+
+def at(x: float, y: float) -> Pixel:
+    """Where a place is on the plan."""
+    return ORIGIN[0] + SCALE * x, ORIGIN[1] - SCALE * y
+
+
+def hold(name: str) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str, Any]]:
+    """A handle of the plan: sets X and Y, and leaves the height."""
+
+    def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
+        x, y = (place[0] - ORIGIN[0]) / SCALE, (ORIGIN[1] - place[1]) / SCALE
+        return {name: (x, y, getattr(p, name)[2])}
+
+    return run
+
+
+def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
+    """The finished plan."""
+    picture = Picture("plan", "From above", WIDTH, HEIGHT)
+    for k in range(-5, 7):
+        picture.line(at(k, -9), at(k, 9), "ghost", width=0.3)
+        picture.line(at(-9, k), at(9, k), "ghost", width=0.3)
+    _eye(picture, p, "left", s.drawn.left, p.left_pan)
+    _eye(picture, p, "right", s.drawn.right, p.right_pan)
+    picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
+    for x, y, _ in s.points[1:].tolist():
+        picture.dot(at(x, y), "ink", 4)
+    held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, "P, the 3D point")
+    for (name, place, words), letter in zip(held, "LRP", strict=True):
+        spot = at(*place[:2])
+        if 0.0 <= spot[0] < WIDTH and 0.0 <= spot[1] < HEIGHT:
+            picture.handle(
+                f"plan_{name}", spot, words, letter, where=f"X {figure(place[0], 2)}, Y {figure(place[1], 2)} metres"
+            )
+    return replace(picture.pane("grid of 1\u2009m"), wide=True)
+
+
+def _eye(picture: Picture, p: EpipolarParams, side: Side, drawn: EyeDrawn, pan: float) -> None:
+    """What the camera sees, its picture, the ray to the point, and its epipole where the baseline meets the picture."""
+    cos, sin = math.cos(math.radians(pan)), math.sin(math.radians(pan))
+    near, (x, y, _) = distance(p.focal, drawn.size), drawn.center
+
+    def seen(right: float, forward: float) -> Pixel:
+        return at(x + cos * right - sin * forward, y + sin * right + cos * forward)
+
+    edge = drawn.corners.item(1, 0) / near
+    picture.line(seen(0, 0), seen(-9 * edge, 9), side, width=0.8)
+    picture.line(seen(0, 0), seen(9 * edge, 9), side, width=0.8)
+    picture.line(seen(-edge * near, near), seen(edge * near, near), side, width=3)
+    picture.line(seen(0, 0), at(*p.point[:2]), side, width=2)
+    if drawn.epipole is not None:
+        right, _, _ = drawn.epipole
+        picture.line(
+            seen(edge * near if right > 0 else -edge * near, near), seen(right, near), side, width=1, dash="4 4"
+        )
+        picture.line(seen(0, 0), seen(right, near), "ink", width=1)
+        picture.dot(seen(right, near), "ink", 5)

@@ -1,0 +1,124 @@
+"""The scene: two cameras and their pictures, the baseline, points, rays, and the epipolar plane."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import trimesh
+
+from geometry.arrays import Array
+from sims.epipolar.drawn import EyeDrawn, Segments
+from sims.epipolar.model import OTHERS, EpipolarParams, Side
+from sims.epipolar.solution import EpipolarSolution
+from sims.epipolar.words import short_trouble
+from sims.kit.camera_figure import CameraFigure
+from sims.kit.readout import quantity
+from sims.kit.stage import Stage
+
+OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+
+
+class EpipolarScene:
+    """World coordinates, but for what lies on a camera's picture."""
+
+    def __init__(self, stage: Stage) -> None:
+        stage.ground(size=16.0, cell=0.5)
+        self.eyes = Eye(stage, "left", "L", "e"), Eye(stage, "right", "R", "e′")
+        self.baseline = stage.lines("/baseline", np.zeros((2, 3)), "ink", width=2.5)
+        self.middle = stage.group("/middle")
+        self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.3))
+        sheet = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
+        self.plane = stage.mesh("/plane", sheet, "held", opacity=0.16, side="double", flat=True)
+        self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
+        self.others = stage.cloud("/others", OTHERS[:0], "ink", size=0.045)
+        self.drops = stage.lines("/drops", np.zeros((2, 3)), "ghost", width=1.0)
+        self.grips = [stage.grip(f"/{name}_center", 0.07, halo=2.6) for name in ("left", "right")]
+        self.point = stage.grip("/point", 0.06, halo=2.4)
+        stage.label("/point/label", "P", (0.0, 0.0, 0.26))
+        self.drop = stage.lines("/point/drop", np.zeros((2, 3)), "ghost", width=1.2)
+        self.pick_ray = stage.lines("/pick_ray", np.zeros((2, 3)), "held", width=3.0)
+        self.warning = stage.label("/warning", "")
+        self.shown = 0
+
+    def draw(self, p: EpipolarParams, s: EpipolarSolution) -> None:
+        for drawn, eye, grip in zip((s.drawn.left, s.drawn.right), self.eyes, self.grips, strict=True):
+            eye.draw(drawn)
+            grip.pose(position=drawn.center)
+        self._baseline(p, s)
+        self._points(p)
+        self.rays.draw(((p.left, p.point), (p.right, p.point)))
+        self.plane.show(p.show_plane and s.drawn.plane is not None)
+        if s.drawn.plane is not None:
+            self.plane.vertices(s.drawn.plane)
+        self.pick_ray.show(s.drawn.picked_ray is not None)
+        if s.drawn.picked_ray is not None:
+            self.pick_ray.stroke(*s.drawn.picked_ray)
+        trouble = short_trouble(s)
+        self.warning.show(trouble is not None)
+        if trouble is not None:
+            x, y, z = p.point if s.F is not None else p.left
+            self.warning.text(f"⚠ {trouble}")
+            self.warning.pose(position=(x, y, z + 0.55))
+
+    def _baseline(self, p: EpipolarParams, s: EpipolarSolution) -> None:
+        self.baseline.stroke(p.left, p.right)
+        self.middle.pose(position=[0.5 * (a + b) for a, b in zip(p.left, p.right, strict=True)])
+        self.baseline_label.text(f"baseline {quantity(s.baseline, 'm', 2)}")
+
+    def _points(self, p: EpipolarParams) -> None:
+        self.point.pose(position=p.point)
+        self.drop.stroke((0.0, 0.0, 0.0), (0.0, 0.0, -p.point[2]))
+        self.others.show(p.points > 1)
+        self.drops.show(p.points > 1)
+        if p.points != self.shown and p.points > 1:
+            self.shown = p.points
+            places = OTHERS[: p.points - 1]
+            self.others.points(places)
+            self.drops.pieces(np.stack([places, places * (1.0, 1.0, 0.0)], axis=1))
+
+
+class Eye:
+    """One camera, and what lies on its picture."""
+
+    def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str, epipole: str) -> None:
+        path, other = f"/{name}", OTHER[name]
+        self.figure = CameraFigure(stage, path, name, letter)
+        self.post = stage.lines(f"{path}/post", np.zeros((2, 3)), "ghost", width=1.2)
+        self.pixel = stage.ball(f"{path}/pixel", 0.022, name)
+        self.others = stage.cloud(f"{path}/others", np.zeros((0, 3)), name, size=0.016)
+        self.line = stage.lines(f"{path}/line", np.zeros((2, 3)), other, width=3.0)
+        self.stretch = stage.lines(f"{path}/stretch", np.zeros((2, 3)), other, width=1.2)
+        self.all_lines = stage.lines(f"{path}/all_lines", np.zeros((2, 3)), other, width=1.0)
+        self.picked_line = stage.lines(f"{path}/picked_line", np.zeros((2, 3)), "held", width=4.0)
+        self.epipole = stage.group(f"{path}/epipole")
+        stage.ball(f"{path}/epipole/ball", 0.03, "ink")
+        stage.label(f"{path}/epipole/label", epipole, (0.0, -0.12, 0.0))
+        self.toward = stage.lines(f"{path}/toward", np.zeros((2, 3)), "ink", width=1.2)
+        self.shown: tuple[Array | None, Segments] = (None, ())
+
+    def draw(self, d: EyeDrawn) -> None:
+        self.figure.node.pose(d.wxyz, d.center)
+        self.figure.draw(d.corners, d.size)
+        self.post.stroke((0.0, 0.08, -0.12 * d.size), (0.0, d.center[2], -0.12 * d.size))
+        for node, place in ((self.pixel, d.pixel), (self.epipole, d.epipole)):
+            node.show(place is not None)
+            if place is not None:
+                node.pose(position=place)
+        toward = None if d.epipole is None else ((0.0, 0.0, 0.0), d.epipole)
+        pieces = d.line, d.stretch, d.picked_line, toward
+        for lines, piece in zip((self.line, self.stretch, self.picked_line, self.toward), pieces, strict=True):
+            lines.show(piece is not None)
+            if piece is not None:
+                lines.stroke(*piece)
+        self._others(d)
+
+    def _others(self, d: EyeDrawn) -> None:
+        self.others.show(len(d.others) > 0)
+        self.all_lines.show(len(d.all_lines) > 0)
+        spots, lines = self.shown
+        if d.others is not spots and len(d.others):
+            self.others.points(d.others)
+        if d.all_lines is not lines and d.all_lines:
+            self.all_lines.pieces(np.array(d.all_lines))
+        self.shown = d.others, d.all_lines
