@@ -14,9 +14,9 @@ from geometry.camera import Camera
 from sims.epipolar.model import CENTER, HEIGHT, WIDTH, Pixel, Place
 from sims.kit.pane import across
 
-PICTURE_WIDTH = 0.72
+PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""
-ROOM, LEAST = 0.9, 0.3
+ROOM, LEAST = 1.1, 0.3
 """Metres of baseline from which on there is room; how small cameras may become, as a part of their full size."""
 REACH = 4.0
 """Metres beyond which an epipole isn't drawn on the plane of its picture."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 from geometry.arrays import Array
 from sims.epipolar.drawn import in_picture
@@ -31,9 +32,7 @@ def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
     line, lines = (s.line_left, s.lines_left) if left else (s.line_right, s.lines_right)
     pixel, pixels = (s.pixel_left, s.pixels_left) if left else (s.pixel_right, s.pixels_right)
     epipole, at = (s.epipole_left, s.epipole_left_pixel) if left else (s.epipole_right, s.epipole_right_pixel)
-    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
-    picture.pickable(f"pick_{side}", f"{side.capitalize()} picture")
-    _coordinates(picture)
+    picture = _frame(side).copy()
     _lines(picture, p, s, side, line, lines)
     _points(picture, p, s, side, pixels)
     if epipole is not None:
@@ -50,11 +49,15 @@ def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark:
     return f"{point}; no e{mark}" if s.F is None else f"{point}; e{mark} {epipole_in_words(epipole)}"
 
 
-def _coordinates(picture: Picture) -> None:
-    """Columns run to the right and rows down, from the top left."""
+@lru_cache(maxsize=2)
+def _frame(side: Side) -> Picture:
+    """A picture with its coordinates alone: columns run to the right and rows down, from the top left."""
+    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
+    picture.pickable(f"pick_{side}", f"{side.capitalize()} picture")
     picture.text((8, 26), "0, 0", "ghost", size=22, fine=True)
     picture.text((WIDTH - 10, 26), f"u {LAST[0]:.0f}", "ghost", anchor="end", size=22, fine=True)
     picture.text((8, HEIGHT - 12), f"v {LAST[1]:.0f}", "ghost", size=22, fine=True)
+    return picture
 
 
 def _lines(
@@ -115,7 +118,7 @@ def _toward(picture: Picture, along: Pixel, role: str, words: str) -> None:
     )  # fmt: skip
     tip, tail = ((CENTER[0] + t * x, CENTER[1] + t * y) for t in (room, room - ARROW))
     picture.arrow(tail, tip, role, width=2.5)
-    picture.text((tail[0] - 24 * x, tail[1] - 18 * y + 9), words, role, anchor=_anchor(x))
+    picture.text((tail[0] - 24 * x, tail[1] - 18 * y + 9), words, role, anchor=_anchor(x), fine="∞" in words)
 
 
 def _anchor(x: float) -> str:

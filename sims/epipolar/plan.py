@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from sims.epipolar.drawn import EyeDrawn, distance
-from sims.epipolar.model import HEIGHT, WIDTH, EpipolarParams, Pixel, Side
+from sims.epipolar.model import EpipolarParams, Pixel, Side
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 
-SCALE = 62.0
+WIDTH, HEIGHT = 640, 340
+SCALE = 46.0
 """Pixels a metre."""
-ORIGIN: Pixel = (320.0, 390.0)
+ORIGIN: Pixel = (320.0, 282.0)
 
 
 def at(x: float, y: float) -> Pixel:
@@ -35,10 +37,7 @@ def hold(name: str) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str
 
 def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
     """The finished plan."""
-    picture = Picture("plan", "From above", WIDTH, HEIGHT)
-    for k in range(-5, 7):
-        picture.line(at(k, -9), at(k, 9), "ghost", width=0.3)
-        picture.line(at(-9, k), at(9, k), "ghost", width=0.3)
+    picture = _grid().copy()
     _eye(picture, p, "left", s.drawn.left, p.left_pan)
     _eye(picture, p, "right", s.drawn.right, p.right_pan)
     picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
@@ -52,6 +51,15 @@ def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
                 f"plan_{name}", spot, words, letter, where=f"X {figure(place[0], 2)}, Y {figure(place[1], 2)} metres"
             )
     return replace(picture.pane("grid of 1\u2009m"), wide=True)
+
+
+@lru_cache(maxsize=1)
+def _grid() -> Picture:
+    picture = Picture("plan", "From above", WIDTH, HEIGHT)
+    for k in range(-6, 7):
+        picture.line(at(k, -9), at(k, 9), "ghost", width=0.3)
+        picture.line(at(-9, k), at(9, k), "ghost", width=0.3)
+    return picture
 
 
 def _eye(picture: Picture, p: EpipolarParams, side: Side, drawn: EyeDrawn, pan: float) -> None:

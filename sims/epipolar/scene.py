@@ -27,7 +27,7 @@ class EpipolarScene:
         self.eyes = Eye(stage, "left", "L", "e"), Eye(stage, "right", "R", "e′")
         self.baseline = stage.lines("/baseline", np.zeros((2, 3)), "ink", width=2.5)
         self.middle = stage.group("/middle")
-        self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.3))
+        self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.5))
         sheet = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
         self.plane = stage.mesh("/plane", sheet, "held", opacity=0.16, side="double", flat=True)
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
@@ -63,7 +63,8 @@ class EpipolarScene:
 
     def _baseline(self, p: EpipolarParams, s: EpipolarSolution) -> None:
         self.baseline.stroke(p.left, p.right)
-        self.middle.pose(position=[0.5 * (a + b) for a, b in zip(p.left, p.right, strict=True)])
+        x, y, _ = (0.5 * (a + b) for a, b in zip(p.left, p.right, strict=True))
+        self.middle.pose(position=(x, y, min(p.left[2], p.right[2])))  # below both, where it hides neither
         self.baseline_label.text(f"baseline {quantity(s.baseline, 'm', 2)}")
 
     def _points(self, p: EpipolarParams) -> None:

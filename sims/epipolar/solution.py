@@ -28,6 +28,7 @@ from geometry.rotations import axis_rotation
 from geometry.triangulation import pixel_noise
 from sims.epipolar.drawn import Drawn, Segment, Segments, chords, distance, drawn_size, eye_drawn, plane, spots
 from sims.epipolar.model import CENTER, OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
+from sims.kit.stage import Quaternion
 
 RANK_TOLERANCE = 1e-12
 EXACT = 1e-9
@@ -42,8 +43,8 @@ class Pair:
 
     left: Camera
     right: Camera
-    wxyz_left: tuple[float, ...]
-    wxyz_right: tuple[float, ...]
+    wxyz: tuple[Quaternion, Quaternion]
+    """Of the left and the right camera, in the world."""
     F: Array | None = None
     E: Array | None = None
     rank: int | None = None
@@ -136,7 +137,7 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
     (left, depth_left), (right, depth_right) = (camera.project(p.point) for camera in (both.left, both.right))
     pixel_left, pixel_right = existing(left), existing(right)
     aligned = both.F is not None and _aligned(p)
-    lines = None, None
+    lines: tuple[Array | None, Array | None] = None, None
     if both.F is not None and not aligned:
         lines = _line(epipolar_line_left(both.F, right)), _line(epipolar_line_right(both.F, left))
     match = None if both.F is None or pixel_left is None or pixel_right is None else (both.F, left, right)
@@ -187,7 +188,7 @@ def _drawn(
             picked=picked.line if picked is not None and picked.side != side else None,
         )
         for side, camera, wxyz, pixel, line, epipole, (others, chords) in zip(
-            ("left", "right"), (both.left, both.right), (both.wxyz_left, both.wxyz_right), pixels, lines,
+            ("left", "right"), (both.left, both.right), both.wxyz, pixels, lines,
             (both.epipole_left, both.epipole_right), still, strict=True,
         )
     ]  # fmt: skip
@@ -207,19 +208,24 @@ def camera(center: Place, pan: float, focal: float) -> Camera:
     return Camera.from_intrinsics(focal, focal, *CENTER, T_camera_world=T)
 
 
+def _orientation(camera: Camera) -> Quaternion:
+    w, x, y, z = quaternion.from_matrix(camera.R.T).tolist()
+    return w, x, y, z
+
+
 @lru_cache(maxsize=256)
 def pair(left: Place, right: Place, left_pan: float, right_pan: float, focal: float) -> Pair:
     """Both cameras, and their epipolar geometry if they have any."""
     first, second = camera(left, left_pan, focal), camera(right, right_pan, focal)
-    turned = [tuple(quaternion.from_matrix(c.R.T).tolist()) for c in (first, second)]
+    turned = _orientation(first), _orientation(second)
     try:
         F, E = fundamental(first, second), normalize(essential(first, second))
     except GeometryError:  # both at one place
-        return Pair(first, second, *turned)
-    values = np.linalg.svd(F, compute_uv=False)
+        return Pair(first, second, turned)
+    values: Array = np.linalg.svd(F, compute_uv=False)
     ends = epipoles(F)
     return Pair(
-        first, second, *turned, F, E, int((values > RANK_TOLERANCE * values[0]).sum()), values, *ends,
+        first, second, turned, F, E, int((values > RANK_TOLERANCE * values[0]).sum()), values, *ends,
         *(existing(epipole_pixel(end)) for end in ends),
     )  # fmt: skip
 

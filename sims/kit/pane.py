@@ -167,6 +167,12 @@ class Picture:
             f' transform="rotate({math.degrees(math.atan2(dy, dx)):.1f})"/>{text}</g>'
         )
 
+    def copy(self) -> Picture:
+        """Another picture that begins with what is in this one: for what stays the same from state to state."""
+        other = Picture(self.name, self.title, self.width, self.height)
+        other._parts, other._over, other._ground = [*self._parts], [*self._over], self._ground
+        return other
+
     def pane(self, note: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)

@@ -10,7 +10,17 @@ from hypothesis import strategies as st
 
 from geometry import Array, GeometryError
 from geometry.camera import Camera, parallel_rig
-from geometry.epipolar import baseline, epipolar_line_left, epipolar_line_right, essential, fundamental
+from geometry.epipolar import (
+    baseline,
+    epipolar_line_left,
+    epipolar_line_right,
+    epipolar_residual,
+    epipole_pixel,
+    epipoles,
+    essential,
+    fundamental,
+    sampson_distance,
+)
 from tests.geometry.strategies import EXACT, cameras, near, rotations, seen_points, stereo_pairs
 
 Pair = tuple[Camera, Camera]
@@ -136,3 +146,83 @@ def test_without_a_baseline_there_is_no_f(camera: Camera, R: Array) -> None:
 def test_the_shortest_baselines_have_an_f(b: float) -> None:
     np.testing.assert_allclose(baseline(*parallel_rig(b, 600.0)), [b, 0.0, 0.0], rtol=0, atol=1e-16)
     np.testing.assert_allclose(fundamental(*parallel_rig(b, 600.0))[1, 2], math.sqrt(0.5), rtol=1e-6)
+
+
+# ---- epipoles and distances
+
+
+@given(stereo_pairs)
+def test_epipoles_are_the_other_cameras_centres(pair: Pair) -> None:
+    left, right = pair
+    for found, expected in zip(epipoles(fundamental(*pair)), (epipole(left, right), epipole(right, left)), strict=True):
+        assert abs(np.linalg.norm(found) - 1.0) < EXACT
+        assert found[np.abs(found).argmax()] > 0.0
+        np.testing.assert_allclose(found, np.sign(found @ expected) * expected, rtol=0, atol=1e-9)
+
+
+@given(seen_points)
+def test_lines_run_through_the_pixel_of_the_epipole(seen: Seen) -> None:
+    left, right, point = seen
+    F = fundamental(left, right)
+    e_left, e_right = (epipole_pixel(e) for e in epipoles(F))
+    for line, pole in (
+        (epipolar_line_right(F, left.project(point)[0]), e_right),
+        (epipolar_line_left(F, right.project(point)[0]), e_left),
+    ):
+        if np.hypot(*pole) < 1e5:
+            assert abs(line @ [*pole, 1.0]) < 1e-6
+
+
+@given(st.floats(0.05, 2.0), st.floats(200.0, 1500.0), near(0.0))
+def test_epipoles_of_a_parallel_rig_are_at_infinity_and_of_a_turned_one_are_not(
+    b: float, focal: float, a: float
+) -> None:
+    left, right = parallel_rig(b, focal)
+    for e in epipoles(fundamental(left, right)):
+        np.testing.assert_allclose(e, [1.0, 0.0, 0.0], rtol=0, atol=EXACT)
+        assert np.isnan(epipole_pixel(e)).all()
+    turn = np.array([[math.cos(a), 0, -math.sin(a)], [0, 1, 0], [math.sin(a), 0, math.cos(a)]])
+    T = right.T_camera_world.copy()
+    T[:3] = turn @ T[:3]
+    _, e = epipoles(fundamental(left, Camera(right.K, T)))
+    expected = turn @ [-b, 0.0, 0.0]
+    seen = epipole_pixel(e)
+    if abs(a) > 1e-9:
+        np.testing.assert_allclose(seen[0], 320 + focal * expected[0] / expected[2], rtol=1e-6)
+
+
+def test_a_matrix_without_rank_two_has_no_epipoles() -> None:
+    for F in (np.eye(3), np.zeros((3, 3)), np.ones((3, 3)), np.full((3, 3), math.nan)):
+        with pytest.raises(GeometryError) as caught:
+            epipoles(F)
+        assert caught.value.argument == "F"
+
+
+@given(stereo_pairs, pixels, pixels)
+def test_sampson_distance_is_the_root_of_opencvs(pair: Pair, left: Array, right: Array) -> None:
+    F = fundamental(*pair)
+    p, q = np.append(left, 1.0), np.append(right, 1.0)
+    np.testing.assert_allclose(epipolar_residual(F, left, right), q @ F @ p, rtol=1e-9, atol=1e-12)
+    expected = cv2.sampsonDistance(p.reshape(3, 1), q.reshape(3, 1), F)
+    np.testing.assert_allclose(sampson_distance(F, left, right) ** 2, expected, rtol=1e-6, atol=1e-12)
+
+
+@given(seen_points, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+def test_sampson_distance_is_zero_for_matches_and_about_the_error_otherwise(seen: Seen, d: float, e: float) -> None:
+    left, right, point = seen
+    F = fundamental(left, right)
+    u, v = left.project(point)[0], right.project(point)[0]
+    assert sampson_distance(F, u, v) < 1e-6
+    moved = v + np.array([d, e])
+    apart = abs(epipolar_line_right(F, u) @ [*moved, 1.0])
+    assert sampson_distance(F, u, moved) <= apart + 1e-9, "both pixels may give way"
+
+
+def test_a_pair_of_epipoles_has_no_sampson_distance() -> None:
+    left = Camera.from_intrinsics(600.0, 600.0, 320.0, 240.0, T_camera_world=np.eye(4))
+    ahead = np.eye(4)
+    ahead[2, 3] = -1.0
+    F = fundamental(left, Camera(left.K, ahead))
+    distances = sampson_distance(F, [[320.0, 240.0], [320.0, 240.0]], [[320.0, 240.0], [330.0, 240.0]])
+    assert math.isnan(distances[0])
+    assert distances[1] == pytest.approx(0.0, abs=1e-9)

@@ -62,6 +62,8 @@ CASES: dict[str, tuple[Function, Array]] = {
     "vanishing_points": (lambda d: projection.vanishing_points(CAMERA.P, d)[0], in_view),
     "epipolar_line_right": (lambda p: epipolar.epipolar_line_right(F, p), uv),
     "epipolar_line_left": (lambda p: epipolar.epipolar_line_left(F, p), uv),
+    "epipolar_residual": (lambda p: epipolar.epipolar_residual(F, p, [200.0, 210.0]), uv),
+    "sampson_distance": (lambda p: epipolar.sampson_distance(F, p, [200.0, 210.0]), uv),
     "triangulate_dlt": (lambda p: triangulation.triangulate_dlt(LEFT, RIGHT, p, [200.0, 200.0]).point, uv),
     "triangulate_midpoint": (lambda p: triangulation.triangulate_midpoint(LEFT, RIGHT, p, [200.0, 200.0]).point, uv),
     "triangulate_optimal": (lambda p: triangulation.triangulate_optimal(LEFT, RIGHT, p, [200.0, 200.0]).point, uv),

@@ -201,3 +201,53 @@ def test_a_mark_at_infinity_says_so_and_has_two_heads() -> None:
     empty = Picture("p", "P")
     empty.outside((319.5, 239.5, 1.0), "x", "nowhere")
     assert "nowhere" not in empty.pane().svg
+
+
+# ---- pictures in which a place can be chosen
+
+
+def test_a_picture_can_be_picked_in_by_pointer_and_key() -> None:
+    picture = full_picture()
+    assert "data-pick" not in picture.pane().svg
+    picture.pickable("pick_left", 'Left "picture"')
+    svg = picture.pane().svg
+    assert not mistakes(svg)
+    (ground,) = (e for e in xml(svg).iter() if e.get("data-pick"))
+    assert ground.get("data-pick") == "pick_left"
+    assert ground.get("tabindex") == "0"
+    assert ground.get("role") == "button"
+    assert str(ground.get("aria-label")).startswith('Left "picture":')
+    assert not list(ground), "what can be pressed holds nothing else that can be"
+    assert svg.index("data-pick") < svg.index("data-handle"), "handles stand above it"
+
+
+def test_a_handle_says_its_place_in_other_words_than_pixels() -> None:
+    picture = Picture("plan", "From above")
+    picture.handle("h", (10, 20), "Camera", "L", where="X 1.00, Y 2.00 metres")
+    assert str(handle_of(picture).get("aria-label")).startswith("Camera: X 1.00, Y 2.00 metres. Arrow")
+
+
+def test_fine_words_are_marked_as_such() -> None:
+    picture = Picture("p", "P")
+    picture.text((1, 2), "coarse")
+    picture.text((1, 2), "fine", fine=True)
+    kinds = {e.text: str(e.get("class")).split() for e in xml(picture.pane().svg).iter() if e.text}
+    assert "s3-fine" in kinds["fine"]
+    assert "s3-fine" not in kinds["coarse"]
+
+
+def test_a_copy_begins_with_the_same_and_goes_its_own_way() -> None:
+    first = full_picture()
+    first.pickable("pick", "Picture")
+    second = first.copy()
+    assert second.pane() == first.pane()
+    second.dot((1, 1), "x")
+    second.text((1, 1), "more")
+    assert first.pane() == full_and_pickable().pane()
+    assert second.pane() != first.pane()
+
+
+def full_and_pickable() -> Picture:
+    picture = full_picture()
+    picture.pickable("pick", "Picture")
+    return picture

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
 from sims.kit import params as kit
-from sims.kit.params import BadParams, Params, choice, number, plain, spell, switch, vector
+from sims.kit.params import BadParams, Params, choice, number, plain, spell, switch, text, vector
 
 
 class Toy(Params):
@@ -367,3 +367,32 @@ def test_dropdown_of_a_number_that_may_be_absent_offers_what_there_is() -> None:
     assert Row().entry_label("sizes", 1) == "Size 2"
     with pytest.raises(ValidationError, match="chosen must be absent, got 1"):
         Row(sizes=(1,), chosen=1)
+
+
+# ---- text in a format of its own
+
+
+class Route(Params):
+    """Somewhere, or nowhere."""
+
+    to: str | None = text(
+        title="To", description="A place", pattern=r"^[a-z]{1,9}:[0-9]{1,4}$", allowed="street:number"
+    )
+
+
+def test_text_is_kept_as_it_is_or_is_absent() -> None:
+    assert Route().query() == ""
+    assert Route(to="elm:12").query() == "to=elm:12"
+    assert Route.from_query([("to", "elm:12")]) == Route(to="elm:12")
+    assert Route(to="elm:12").changed({"to": None}) == Route()
+    assert Route(to="elm:12").moved({"to": "oak:3"}).to == "oak:3"
+    assert Route.model_validate_json('{"to": null}') == Route()
+
+
+@pytest.mark.parametrize("wrong", ["", "elm", "elm:", "Elm:12", "elm:12 ", "elm:12\n", "x" * 9 + ":12345"])
+def test_text_in_another_format_is_refused_with_the_format_in_words(wrong: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        Route.from_query([("to", wrong)])
+    assert caught.value.complaints == [("to", wrong, "street:number")]
+    with pytest.raises(ValidationError):
+        Route().changed({"to": wrong})

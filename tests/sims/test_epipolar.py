@@ -1,0 +1,590 @@
+"""epipolar: its numbers against the definitions and OpenCV, its states without an answer, what is drawn, its hands."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, plan, solve
+from sims.epipolar.model import PRESETS
+from sims.epipolar.pictures import panes
+from sims.kit import readout
+from sims.kit.palette import LIGHT
+from sims.kit.params import BadParams
+from sims.kit.sim import jsonable
+from tests.server import Rig
+from tests.sims.markup import words, xml
+
+Array = npt.NDArray[np.float64]
+START = EpipolarParams()
+SIDES = ("left", "right")
+places = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 3))
+pans = st.floats(-60, 60)
+states = st.builds(
+    EpipolarParams,
+    left=places,
+    right=places,
+    left_pan=pans,
+    right_pan=pans,
+    focal=st.floats(200, 1500),
+    point=st.tuples(st.floats(-5, 5), st.floats(-3, 12), st.floats(-2, 5)),
+    points=st.integers(1, 12),
+    noise=st.sampled_from([0.0, 1.0]),
+)
+
+
+def pose(p: EpipolarParams, side: str) -> tuple[Array, Array]:
+    """Columns of the camera's axes in the world, and its centre: Rz(pan) C, as the contract has it."""
+    a = math.radians(getattr(p, f"{side}_pan"))
+    turn = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
+    return turn @ [[1.0, 0, 0], [0, 0, 1], [0, -1, 0]], np.array(getattr(p, side))
+
+
+def pixels(p: EpipolarParams, side: str, points: npt.ArrayLike) -> Array:
+    """Pixels (n, 2) of points (n, 3) in the world by the definition of a camera."""
+    R, C = pose(p, side)
+    x, y, z = ((np.asarray(points, dtype=float) - C) @ R).T
+    return np.column_stack([320 + p.focal * x / z, 240 + p.focal * y / z])
+
+
+def in_frame(seen: Array) -> bool:
+    return bool(((seen >= -0.5) & (seen <= (639.5, 479.5))).all())
+
+
+def lines_of(s: EpipolarSolution, side: str) -> Array:
+    lines = s.lines_left if side == "left" else s.lines_right
+    assert lines is not None
+    return lines
+
+
+def pixels_of(s: EpipolarSolution, side: str) -> Array:
+    return s.pixels_left if side == "left" else s.pixels_right
+
+
+each_preset = pytest.mark.parametrize("name", PRESETS)
+
+
+# ---- numbers
+
+
+def test_defaults_are_a_rectified_pair() -> None:
+    s = solve(START)
+    half = math.sqrt(0.5)
+    np.testing.assert_allclose(s.K, [[600, 0, 320], [0, 600, 240], [0, 0, 1]])
+    assert s.F is not None
+    assert s.E is not None
+    np.testing.assert_allclose(s.F, [[0, 0, 0], [0, 0, half], [0, -half, 0]], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(s.E, [[0, 0, 0], [0, 0, half], [0, -half, 0]], rtol=0, atol=1e-12)
+    assert s.rank == 2
+    np.testing.assert_allclose(s.singular_values, [half, half, 0], rtol=0, atol=1e-12)  # type: ignore[arg-type]
+    assert s.epipole_left_pixel is s.epipole_right_pixel is None, "at infinity"
+    np.testing.assert_allclose(s.epipole_left, [1, 0, 0], rtol=0, atol=1e-12)  # type: ignore[arg-type]
+    assert s.pixel_left == pytest.approx((455, 210))
+    assert s.pixel_right == pytest.approx((275, 210))
+    for line in (s.line_left, s.line_right):
+        np.testing.assert_allclose(np.abs(line), [0, 1, 210], rtol=0, atol=1e-9)  # type: ignore[arg-type]
+
+
+@each_preset
+@pytest.mark.parametrize("count", [1, 6, 12])
+def test_all_shown_points_lie_in_both_pictures(name: str, count: int) -> None:
+    p = START.changed({**PRESETS[name], "points": count})
+    s = solve(p)
+    for side in SIDES:
+        assert len(pixels_of(s, side)) == count
+        np.testing.assert_allclose(pixels_of(s, side), pixels(p, side, s.points), rtol=0, atol=1e-9)
+        assert in_frame(pixels_of(s, side))
+
+
+@each_preset
+def test_exact_points_satisfy_the_constraint_and_lines_run_through_point_and_epipole(name: str) -> None:
+    s = solve(START.changed({**PRESETS[name], "points": 12}))
+    assert s.F is not None
+    assert s.residual is not None
+    assert s.sampson is not None
+    assert abs(s.residual) < 1e-9
+    assert s.sampson < 1e-9
+    for p_left, p_right in zip(s.pixels_left, s.pixels_right, strict=True):
+        assert abs(np.append(p_right, 1) @ s.F @ np.append(p_left, 1)) < 1e-9
+    for side, pole in (("left", s.epipole_left), ("right", s.epipole_right)):
+        assert pole is not None
+        for line, pixel in zip(lines_of(s, side), pixels_of(s, side), strict=True):
+            assert math.hypot(line[0], line[1]) == pytest.approx(1.0, abs=1e-12)
+            assert abs(line @ [*pixel, 1]) < 1e-6
+            assert abs(line @ pole) < 1e-6 * max(abs(pole[2]), 1e-6), "a distance in pixels where it is finite"
+
+
+@each_preset
+def test_lines_are_opencvs(name: str) -> None:
+    s = solve(START.changed({**PRESETS[name], "points": 12}))
+    assert s.F is not None
+    for which, seen, side in ((1, s.pixels_left, "right"), (2, s.pixels_right, "left")):
+        expected = cv2.computeCorrespondEpilines(seen.reshape(-1, 1, 2), which, s.F)[:, 0]
+        np.testing.assert_allclose(lines_of(s, side), expected, rtol=1e-4, atol=1e-3)  # single precision
+
+
+@given(states)
+def test_f_and_p_are_those_of_the_definition_in_every_state(p: EpipolarParams) -> None:
+    s = solve(p)
+    jsonable(s)
+    for side, P in (("left", s.P_left), ("right", s.P_right)):
+        R, C = pose(p, side)
+        np.testing.assert_allclose(P, s.K @ np.column_stack([R.T, -R.T @ C]), rtol=0, atol=1e-9)
+    assert (s.F is None) == (math.dist(p.left, p.right) == 0.0)
+    if s.F is None or math.dist(p.left, p.right) < 1e-3:
+        return
+    assert s.rank == 2
+    assert np.linalg.norm(s.F) == pytest.approx(1.0, abs=1e-12)
+    assert s.F.ravel()[np.abs(s.F).argmax()] > 0
+    # Any F of these cameras: [e']ₓ P' P⁺ (Hartley and Zisserman, eq. 9.1)
+    e = s.P_right @ [*p.left, 1]
+    expected = np.array([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]]) @ s.P_right @ np.linalg.pinv(s.P_left)
+    expected /= np.linalg.norm(expected)
+    np.testing.assert_allclose(s.F, np.sign((expected * s.F).sum()) * expected, rtol=0, atol=1e-8)
+
+
+@given(states)
+def test_epipoles_are_where_each_camera_sees_the_other(p: EpipolarParams) -> None:
+    s = solve(p)
+    if s.F is None or math.dist(p.left, p.right) < 1e-2:
+        return
+    for side, other, pole in (("left", p.right, s.epipole_left_pixel), ("right", p.left, s.epipole_right_pixel)):
+        (seen,) = pixels(p, side, [other])
+        if np.abs(seen).max() < 1e4:
+            assert pole == pytest.approx(tuple(seen), abs=1e-4)
+
+
+def test_up_is_up() -> None:
+    low, high = solve(START.changed({"point": (0.3, 4, 0.5)})), solve(START.changed({"point": (0.3, 4, 1.5)}))
+    assert low.pixel_left is not None
+    assert high.pixel_left is not None
+    assert high.pixel_left[1] < low.pixel_left[1], "rows count downwards"
+
+
+def test_forward_motion_has_both_epipoles_in_sight_and_turning_sends_them_away() -> None:
+    s = solve(START.changed(PRESETS["forward"]))
+    assert s.epipole_left_pixel == pytest.approx((320, 240), abs=1e-9)
+    assert s.epipole_right_pixel == pytest.approx((320, 240), abs=1e-9)
+    assert solve(START.changed(PRESETS["vertical"])).epipole_left_pixel is None
+    converging = solve(START.changed(PRESETS["converging"]))
+    assert converging.epipole_left_pixel == pytest.approx((320 + 600 * math.tan(math.radians(72)), 240))
+
+
+def test_moving_the_point_in_its_epipolar_plane_keeps_both_lines() -> None:
+    before, after = (solve(START.changed({"point": point})) for point in ((0.3, 4.0, 1.2), (-0.4, 2.0, 1.1)))
+    assert before.pixel_left != after.pixel_left
+    assert before.pixel_right != after.pixel_right
+    np.testing.assert_allclose(before.line_left, after.line_left, atol=1e-9)  # type: ignore[arg-type]
+    np.testing.assert_allclose(before.line_right, after.line_right, atol=1e-9)  # type: ignore[arg-type]
+
+
+# ---- what doesn't exist
+
+
+@pytest.mark.parametrize("pan", [0.0, 8.0])
+def test_without_a_baseline_there_is_no_f_and_the_rest_goes_on(pan: float) -> None:
+    p = START.changed(
+        {"left": (0, 0, 1), "right": (0, 0, 1), "left_pan": pan, "right_pan": -pan, "points": 12, "pick": "left:9,9"}
+    )
+    s = jsonable(solve(p))
+    nothing = (
+        "F E rank singular_values epipole_left epipole_right epipole_left_pixel line_left line_right residual sampson"
+    )
+    assert all(s[name] is None for name in nothing.split())
+    assert s["pixel_left"] is not None
+    assert s["K"] is not None
+    assert s["estimate"]["status"] == "ambiguous"
+    assert s["picked"]["line"] is None
+    html = words(readout.render(SIM.readouts(p, solve(p))))
+    assert "without a baseline" in html
+    assert "⚠" in html
+    assert "more than one F" in html
+
+
+def test_the_tiniest_baseline_has_an_f() -> None:
+    s = solve(START.changed(SIM.states["tiny baseline"]))
+    assert s.rank == 2
+    assert s.residual == pytest.approx(0.0, abs=1e-9)
+
+
+def test_points_that_are_not_in_front_have_no_pixel() -> None:
+    s = solve(START.changed(SIM.states["behind one"]))
+    assert s.pixel_right is None
+    assert s.line_left is None
+    assert s.residual is None
+    assert s.pixel_left is not None
+    assert s.line_right is not None, "its left pixel has a line all the same"
+    s = solve(START.changed(SIM.states["behind both"]))
+    assert s.pixel_left is s.pixel_right is s.line_left is s.line_right is None
+    assert s.F is not None
+
+
+def test_a_point_on_the_baseline_has_no_line() -> None:
+    p = START.changed(SIM.states["point on the baseline"])
+    s = solve(p)
+    assert s.on_baseline
+    assert s.line_left is s.line_right is s.drawn.plane is None
+    assert "every plane" in words(readout.render(SIM.readouts(p, s)))
+
+
+# ---- the picked pixel
+
+
+@pytest.mark.parametrize("pick", ["left:200,300", "right:0,0", "left:639,479", "right:10.25,1e-05"])
+def test_a_picked_pixel_stands_in_the_link_and_has_its_line_in_the_other_picture(pick: str) -> None:
+    p = EpipolarParams.from_query([("pick", pick), *START.changed(PRESETS["converging"]).query_items().items()])
+    assert p.query_items()["pick"] == pick
+    s = solve(p)
+    assert s.picked is not None
+    assert s.F is not None
+    assert pick.startswith(s.picked.side)
+    F = s.F if s.picked.side == "left" else s.F.T
+    expected = F @ [*s.picked.pixel, 1]
+    np.testing.assert_allclose(s.picked.line, expected / math.hypot(*expected[:2]), rtol=0, atol=1e-9)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "pick",
+    [
+        "left", "left:", "left:1", "left:1,2,3", "middle:1,2", "Left:1,2", "left:a,b", "left:-1,2", "left:640,2",
+        "right:1,480", "left:nan,1", "left:1e999,1", "left:1.2.3,4", "left: 1,2", "left:1,2 ", "",
+    ],
+)  # fmt: skip
+def test_a_pick_that_is_none_is_refused_with_what_is_allowed(pick: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        EpipolarParams.from_query([("pick", pick), ("focal", "700")])
+    ((name, received, allowed),) = caught.value.complaints
+    assert (name, received) == ("pick", pick)
+    assert allowed == "left:u,v or right:u,v, with u from 0 to 639 and v from 0 to 479"
+    assert caught.value.good == {"focal": "700"}
+
+
+def test_pictures_are_picked_in_and_the_pick_is_cleared() -> None:
+    assert SIM.handles["pick_left"](START, (12.5, 30.25)) == {"pick": "left:12.5,30.25"}
+    assert SIM.handles["pick_right"](START, (-4.0, 600.0)) == {"pick": "right:0,479"}
+    picked = START.changed({"pick": "left:1,2"})
+    clear = next(action for action in SIM.actions if action.name == "clear-pick")
+    assert picked.changed(clear.run(picked)) == START  # type: ignore[arg-type]
+
+
+# ---- F from the points
+
+
+@each_preset
+def test_exact_pixels_give_the_true_f(name: str) -> None:
+    s = solve(START.changed({**PRESETS[name], "points": 8}))
+    assert s.estimate.status == "found"
+    assert s.estimate.difference == pytest.approx(0.0, abs=1e-9)
+    assert s.estimate.exact_rms == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 7])
+def test_fewer_than_eight_points_are_too_few_and_it_is_said(count: int) -> None:
+    p = START.changed({"points": count, "noise": 1.0})
+    s = solve(p)
+    assert s.estimate.status == "few"
+    assert s.estimate.F is None
+    assert f"takes 8 points that both cameras see; here are {count}." in words(readout.render(SIM.readouts(p, s)))
+
+
+def test_a_point_that_one_camera_does_not_see_is_left_out() -> None:
+    p = START.changed({**SIM.states["behind one"], "points": 9})
+    assert solve(p).estimate.seen == 8
+    assert solve(p).estimate.status == "found"
+    assert solve(p.changed({"points": 8})).estimate.status == "few"
+
+
+def test_noise_is_of_its_seed_and_makes_an_estimate_that_fits_the_noise_better_than_the_truth() -> None:
+    p = START.changed({"points": 12, "noise": 1.0})
+    differences = []
+    for seed in range(40):
+        s = solve(p.changed({"seed": seed}))
+        e = s.estimate
+        assert e.F is not None
+        assert e.difference is not None
+        assert np.linalg.svd(e.F)[1][2] < 1e-12
+        differences.append(e.difference)
+        again = solve(p.changed({"seed": seed}))
+        np.testing.assert_array_equal(e.F, again.estimate.F)  # type: ignore[arg-type]
+        offsets = np.concatenate([e.measured_left - s.pixels_left, e.measured_right - s.pixels_right])
+        assert 0.5 < offsets.std() < 1.6
+        np.testing.assert_array_equal(s.pixels_left, solve(p.changed({"noise": 0.0})).pixels_left)
+    fits = [solve(p.changed({"seed": seed})).estimate for seed in range(40)]
+    assert np.mean([e.noisy_rms for e in fits]) < np.mean([e.noisy_rms_true for e in fits])  # type: ignore[arg-type]
+    less = [solve(p.changed({"seed": seed, "noise": 0.1})).estimate.difference for seed in range(40)]
+    assert np.median(less) < 0.3 * np.median(differences)  # type: ignore[arg-type]
+
+
+def test_the_button_shows_noise_and_then_the_next() -> None:
+    button = next(action for action in SIM.actions if action.name == "new-sample").run
+    noisy = START.changed(button(START))  # type: ignore[arg-type]
+    assert (noisy.noise, noisy.points, noisy.seed) == (1.0, 12, 0)
+    assert noisy.changed(button(noisy)).seed == 1  # type: ignore[arg-type]
+    assert START.changed(button(noisy.changed({"seed": 9999}))).seed == 0  # type: ignore[arg-type]
+
+
+# ---- shown equals drawn
+
+
+@pytest.fixture(scope="module")
+def rig() -> Iterator[Rig]:
+    with Rig(SIM) as rig:
+        yield rig
+
+
+def drawn_states() -> dict[str, EpipolarParams]:
+    named = {name: START.changed(changes) for name, changes in {"defaults": {}, **SIM.states}.items()}
+    random = np.random.default_rng(7)
+    for k in range(20):
+        left, right = random.uniform((-3, -3, 0), (3, 3, 3), (2, 3)).tolist()
+        named[f"random {k}"] = START.changed(
+            {
+                "left": left, "right": right, "left_pan": random.uniform(-60, 60), "right_pan": random.uniform(-60, 60),
+                "focal": random.uniform(200, 1500), "point": random.uniform((-5, -3, -2), (5, 12, 5)).tolist(),
+                "points": int(random.integers(1, 13)), "show_all_lines": bool(k % 2), "show_plane": bool(k % 3),
+                "pick": random.choice(["left:100,50", "right:600,400"]),
+            }
+        )  # fmt: skip
+    return named
+
+
+DRAWN = drawn_states()
+each_drawn = pytest.mark.parametrize("params", DRAWN.values(), ids=DRAWN.keys())
+
+
+def ends(rig: Rig, name: str) -> Array:
+    """Both ends of a stroke, in the world."""
+    drawn: Array = rig.model.points(name)[0]
+    return drawn
+
+
+@each_drawn
+def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: EpipolarParams) -> None:
+    rig.show(params)
+    model, s = rig.model, solve(params)
+    for side in SIDES:
+        R, C = pose(params, side)
+        seen = model.world_pose(f"/{side}")
+        np.testing.assert_allclose(seen[:3, :3], R, rtol=0, atol=1e-9)
+        np.testing.assert_array_equal(seen[:3, 3], C)
+        np.testing.assert_array_equal(model.world_pose(f"/{side}_center")[:3, 3], C)
+        corners = pixels(params, side, model.points(f"/{side}/picture"))
+        np.testing.assert_allclose(corners[[0, 2]], [(-0.5, -0.5), (639.5, 479.5)], rtol=0, atol=2e-2)
+        ray = model.points("/rays")[SIDES.index(side)]
+        np.testing.assert_allclose(ray, [C, params.point], rtol=0, atol=1e-6)
+        pixel = s.pixel_left if side == "left" else s.pixel_right
+        assert model.visible(f"/{side}/pixel") == (pixel is not None and in_frame(np.array([pixel])))
+        if model.visible(f"/{side}/pixel"):
+            place = model.world_pose(f"/{side}/pixel")[None, :3, 3]
+            np.testing.assert_allclose(pixels(params, side, place), [pixel], rtol=0, atol=1e-6)
+    np.testing.assert_array_equal(model.world_pose("/point")[:3, 3], params.point)
+    np.testing.assert_allclose(ends(rig, "/baseline"), [params.left, params.right], rtol=0, atol=1e-6)
+    if params.points > 1:
+        np.testing.assert_allclose(model.points("/others"), s.points[1:], rtol=0, atol=1e-6)
+
+
+def crosses(lines: Array) -> bool:
+    """Whether any of the lines has corners of the picture on both its sides."""
+    corners = np.array([(0, 0, 1), (639, 0, 1), (639, 479, 1), (0, 479, 1)])
+    apart = lines @ corners.T
+    return bool(((apart.min(axis=1) < 0) & (apart.max(axis=1) > 0)).any()) if len(lines) else False
+
+
+@each_drawn
+def test_lines_and_epipoles_lie_on_the_pictures_where_the_numbers_say(rig: Rig, params: EpipolarParams) -> None:
+    rig.show(params)
+    model, s = rig.model, solve(params)
+    for side, line, pole in (
+        ("left", s.line_left, s.epipole_left_pixel),
+        ("right", s.line_right, s.epipole_right_pixel),
+    ):
+        if model.visible(f"/{side}/line"):
+            assert line is not None
+            for u, v in pixels(params, side, ends(rig, f"/{side}/line")):
+                assert abs(line @ [u, v, 1]) < 0.05
+                assert min(abs(u + 0.5), abs(u - 639.5), abs(v + 0.5), abs(v - 479.5)) < 0.05, "from edge to edge"
+        if model.visible(f"/{side}/epipole"):
+            assert pole is not None
+            place = model.world_pose(f"/{side}/epipole")[:3, 3]
+            np.testing.assert_allclose(pixels(params, side, [place]), [pole], rtol=1e-6, atol=1e-4)
+            along = np.subtract(params.right, params.left)
+            across = np.cross(place - params.left, along) / np.linalg.norm(along)
+            assert np.linalg.norm(across) < 1e-6, "on the baseline"
+        if model.visible(f"/{side}/all_lines"):
+            drawn = model.points(f"/{side}/all_lines")
+            assert len(drawn) <= params.points - 1
+            for piece in drawn:
+                seen = np.column_stack([pixels(params, side, piece), np.ones(2)])
+                assert np.abs(seen @ lines_of(s, side)[1:].T).max(axis=0).min() < 0.05
+        else:
+            assert not params.show_all_lines or s.F is None or not crosses(lines_of(s, side)[1:])
+
+
+@each_drawn
+def test_the_plane_holds_both_centres_and_the_point(rig: Rig, params: EpipolarParams) -> None:
+    rig.show(params)
+    s = solve(params)
+    there = params.show_plane and s.F is not None and not s.on_baseline
+    assert rig.model.visible("/plane") == there
+    if there and s.baseline > 1e-3:
+        corners = rig.model.points("/plane")
+        normal = np.cross(corners[1] - corners[0], corners[3] - corners[0])
+        normal /= np.linalg.norm(normal)
+        for place in (params.left, params.right, params.point):
+            assert abs(normal @ (np.array(place) - corners[0])) < 1e-4
+
+
+@each_drawn
+def test_the_picked_pixel_is_drawn(rig: Rig, params: EpipolarParams) -> None:
+    rig.show(params)
+    model, s = rig.model, solve(params)
+    assert model.visible("/pick_ray") == (s.picked is not None)
+    if s.picked is None:
+        assert not model.visible("/left/picked_line")
+        return
+    side, other = s.picked.side, "right" if s.picked.side == "left" else "left"
+    start, end = ends(rig, "/pick_ray")
+    np.testing.assert_allclose(start, getattr(params, side), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(pixels(params, side, [end]), [s.picked.pixel], rtol=0, atol=1e-2)
+    assert not model.visible(f"/{side}/picked_line")
+    if model.visible(f"/{other}/picked_line"):
+        assert s.picked.line is not None
+        seen = np.column_stack([pixels(params, other, ends(rig, f"/{other}/picked_line")), np.ones(2)])
+        assert np.abs(seen @ s.picked.line).max() < 0.05
+
+
+@each_drawn
+def test_trouble_is_said_in_the_scene_and_beside_it(rig: Rig, params: EpipolarParams) -> None:
+    rig.show(params)
+    s = solve(params)
+    trouble = s.F is None or s.on_baseline or s.pixel_left is None or s.pixel_right is None
+    assert rig.model.visible("/warning") == trouble
+    assert not trouble or "s3-warn" in rig.model.html("s3-readouts")
+
+
+# ---- pictures
+
+
+def shapes(svg: str, tag: str) -> list[dict[str, str]]:
+    return [dict(e.attrib) for e in xml(svg).iter() if e.tag.split("}")[-1] == tag]
+
+
+@pytest.mark.parametrize("name", ["defaults", "converging", "forward", "vertical", "picked", "noise", "zero baseline"])
+def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
+    p = DRAWN[name]
+    s = solve(p)
+    for pane, side in zip(panes(p, s, LIGHT), SIDES, strict=False):
+        dots = [d for d in shapes(pane.svg, "circle") if d.get("fill") == f"var(--{side})"]
+        at = np.array([[float(d["cx"]), float(d["cy"])] for d in dots])
+        np.testing.assert_allclose(at, pixels_of(s, side)[1:], rtol=0, atol=0.006)
+        held = next(g for g in shapes(pane.svg, "g") if g.get("data-handle") == f"{side}_pixel")
+        assert (float(held["data-x"]), float(held["data-y"])) == (s.pixel_left if side == "left" else s.pixel_right)
+        dashed = [d for d in shapes(pane.svg, "line") if d.get("stroke-dasharray") == "7 5"]
+        line = s.line_left if side == "left" else s.line_right
+        assert len(dashed) == (line is not None)
+        for d in dashed:
+            for k in ("1", "2"):
+                assert abs(line @ [float(d[f"x{k}"]), float(d[f"y{k}"]), 1]) < 0.02  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("name", "arrows"), [("defaults", 2), ("vertical", 2), ("converging", 1), ("forward", 0), ("zero baseline", 0)]
+)
+def test_an_arrow_at_the_border_points_to_an_epipole_that_is_outside(name: str, arrows: int) -> None:
+    p = DRAWN[name]
+    s = solve(p)
+    for pane, pole in zip(panes(p, s, LIGHT), (s.epipole_left_pixel, s.epipole_right_pixel), strict=False):
+        found = [d for d in shapes(pane.svg, "line") if "marker-end" in d]
+        assert len(found) == arrows
+        for arrow in found:
+            u, v, x, y = (float(arrow[k]) for k in ("x1", "y1", "x2", "y2"))
+            assert min(abs(x + 0.5), abs(x - 639.5), abs(y + 0.5), abs(y - 479.5)) < 6, "its tip is at the border"
+            if pole is not None:
+                toward = np.array(pole) - (320, 240)
+                assert toward @ (x - u, y - v) == pytest.approx(
+                    np.linalg.norm(toward) * math.hypot(x - u, y - v), rel=1e-3
+                )
+        rings = [d for d in shapes(pane.svg, "circle") if d.get("class") == "s3-hollow"]
+        assert len(rings) == (pole is not None and in_frame(np.array([pole])))
+
+
+def test_both_pictures_can_be_picked_in_and_the_plan_goes_when_told() -> None:
+    left, right, above = panes(START, solve(START), LIGHT)
+    assert 'data-pick="pick_left"' in left.svg
+    assert 'data-pick="pick_right"' in right.svg
+    assert "data-pick" not in above.svg
+    hidden = START.changed({"show_top": False})
+    assert len(panes(hidden, solve(hidden), LIGHT)) == 2
+
+
+@pytest.mark.parametrize("name", ["defaults", "converging", "forward"])
+def test_the_plan_shows_places_from_above(name: str) -> None:
+    p = DRAWN[name]
+    svg = panes(p, solve(p), LIGHT)[2].svg
+    for handle in ("left", "right", "point"):
+        (g,) = (g for g in shapes(svg, "g") if g.get("data-handle") == f"plan_{handle}")
+        at = float(g["data-x"]), float(g["data-y"])
+        x, y, z = getattr(p, handle)
+        assert at == pytest.approx(plan.at(x, y))
+        assert re.search(rf"X {x:.2f}, Y {y:.2f} metres".replace("-", "−"), g["aria-label"])
+        held = p.changed(SIM.handles[f"plan_{handle}"](p, (at[0] + plan.SCALE, at[1] - plan.SCALE)))
+        assert getattr(held, handle) == pytest.approx((x + 1, y + 1, z)), "X to the right, Y up, the same height"
+
+
+# ---- hands and buttons
+
+
+@pytest.mark.parametrize(("node", "name"), [("/point", "point"), ("/left_center", "left"), ("/right_center", "right")])
+def test_what_is_dragged_in_the_scene_follows(rig: Rig, node: str, name: str) -> None:
+    rig.show(START)
+    aim = (0.25, 0.5, 1.4)
+    rig.browser.drag(node, (0.1, 0.2, 1.1), aim)
+    rig.settle()
+    assert getattr(rig.session.params, name) == pytest.approx(aim)
+    np.testing.assert_allclose(rig.model.world_pose(node)[:3, 3], aim, rtol=0, atol=1e-9)
+
+
+def test_a_camera_dragged_onto_the_other_ends_epipolar_geometry_and_away_again_restores_it(rig: Rig) -> None:
+    rig.show(START)
+    rig.browser.drag("/left_center", START.right)
+    rig.settle()
+    assert rig.session.solution.F is None
+    assert any("no baseline" in text for text in rig.model.labels().values())
+    rig.browser.drag("/left_center", START.left)
+    rig.settle()
+    assert rig.session.params == START
+    assert rig.session.solution.F is not None
+
+
+@given(states, st.sampled_from(SIDES), st.floats(0, 639), st.floats(0, 479))
+def test_holding_the_point_in_a_picture_puts_it_there_at_its_depth(
+    p: EpipolarParams, side: str, u: float, v: float
+) -> None:
+    p = p.changed({"point": (0.3, 4.0, 1.2)})
+    R, C = pose(p, side)
+    depth = float((np.array(p.point) - C) @ R[:, 2])
+    place = SIM.handles[f"{side}_pixel"](p, (u, v))["point"]
+    np.testing.assert_allclose(pixels(p, side, [place]), [(u, v)], rtol=0, atol=1e-6)
+    if depth > 0.05:
+        assert (np.array(place) - C) @ R[:, 2] == pytest.approx(depth)
+
+
+@each_preset
+def test_buttons_lead_to_presets_with_everything_in_sight(name: str) -> None:
+    action: Any = next(action for action in SIM.actions if action.name == name)
+    lost = START.changed({"point": (4, 9, 4), "focal": 1400, "left_pan": 50, "points": 9, "pick": "left:1,2"})
+    state = lost
+    for step in action.run(lost):
+        assert 0.4 <= step.seconds <= 1.2
+        state = state.changed(step.changes)
+    assert state == START.changed({**PRESETS[name], "points": 9, "pick": "left:1,2"})
+    assert in_frame(solve(state).pixels_left)
