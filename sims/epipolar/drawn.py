@@ -93,18 +93,16 @@ def chords(lines: Array, focal: float, near: float) -> Segments:
 
 
 def eye_drawn(
-    camera: Camera, wxyz: tuple[float, ...], size: float, *, pixel: Pixel | None, line: Array | None,
+    center: Place, wxyz: tuple[float, ...], focal: float, size: float, *, pixel: Pixel | None, line: Array | None,
     picked: Array | None, epipole: Array | None, others: Array, all_lines: Segments,
 ) -> EyeDrawn:  # fmt: skip
     """What one camera shows: of the held point its pixel and its line, of the other points what is drawn already."""
-    focal = camera.K.item(0, 0)
     near = distance(focal, size)
     piece, chosen = (None if l is None else chord(l.tolist(), focal, near) for l in (line, picked))
     end = None if epipole is None else _epipole(epipole.tolist(), focal, near)
-    x, y, z = camera.center.tolist()
     return EyeDrawn(
         wxyz=wxyz,
-        center=(x, y, z),
+        center=center,
         size=size,
         corners=corners(focal, size),
         pixel=None if pixel is None or not in_picture(*pixel) else on_picture(*pixel, focal, near),

@@ -92,7 +92,7 @@ class Estimate:
     exact_rms: float | None = None
     noisy_rms_true: float | None = None
     difference: float | None = None
-    """Frobenius norm of the difference from the true F, both of norm 1."""
+    """Frobenius norm of the difference of Kᵀ F K from E, both of norm 1: in pixels F's entries don't compare."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,11 +184,11 @@ def _drawn(
     still = other_drawings(p.left, p.right, p.left_pan, p.right_pan, p.focal, p.points - 1, p.show_all_lines)
     eyes = [
         eye_drawn(
-            camera, wxyz, size, pixel=pixel, line=line, epipole=epipole, others=others, all_lines=chords,
+            center, wxyz, p.focal, size, pixel=pixel, line=line, epipole=epipole, others=others, all_lines=chords,
             picked=picked.line if picked is not None and picked.side != side else None,
         )
-        for side, camera, wxyz, pixel, line, epipole, (others, chords) in zip(
-            ("left", "right"), (both.left, both.right), both.wxyz, pixels, lines,
+        for side, center, wxyz, pixel, line, epipole, (others, chords) in zip(
+            ("left", "right"), (p.left, p.right), both.wxyz, pixels, lines,
             (both.epipole_left, both.epipole_right), still, strict=True,
         )
     ]  # fmt: skip
@@ -323,7 +323,7 @@ def _estimate(p: EpipolarParams, both: Pair, seen: Views) -> Estimate:
         noisy_rms=_rms(found.F, *noisy),
         exact_rms=_rms(found.F, *exact),
         noisy_rms_true=None if both.F is None else _rms(both.F, *noisy),
-        difference=None if both.F is None else _difference(found.F, both.F),
+        difference=None if both.E is None else _difference(normalize(both.left.K.T @ found.F @ both.left.K), both.E),
     )  # fmt: skip
 
 
@@ -332,9 +332,9 @@ def _rms(F: Array, left: Array, right: Array) -> float:
     return math.sqrt(float(np.nanmean(squares)))
 
 
-def _difference(F: Array, other: Array) -> float:
+def _difference(matrix: Array, other: Array) -> float:
     """Of two matrices that are defined up to sign."""
-    return min(float(np.linalg.norm(F - other)), float(np.linalg.norm(F + other)))
+    return min(float(np.linalg.norm(matrix - other)), float(np.linalg.norm(matrix + other)))
 
 
 # ---- what exists

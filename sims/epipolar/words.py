@@ -124,7 +124,7 @@ def _estimate(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
         yield Formula(words, "<mover><mi>F</mi><mo>^</mo></mover>", mathml(1e3 * e.F), THOUSANDTHS)
         yield _errors(e)
         if e.difference is not None:
-            yield Formula("Difference from F, Frobenius norm", symbol("Δ"), mathml(1e3 * e.difference), THOUSANDTHS)
+            yield Formula("Frobenius norm of the error of E that this means", symbol("Δ"), mathml(e.difference))
         yield Formula("Conditioning of the equations, σ₈ : σ₁", symbol("κ"), mathml(e.conditioning, 4))
 
 

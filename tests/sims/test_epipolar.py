@@ -53,7 +53,8 @@ def pixels(p: EpipolarParams, side: str, points: npt.ArrayLike) -> Array:
     """Pixels (n, 2) of points (n, 3) in the world by the definition of a camera."""
     R, C = pose(p, side)
     x, y, z = ((np.asarray(points, dtype=float) - C) @ R).T
-    return np.column_stack([320 + p.focal * x / z, 240 + p.focal * y / z])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.column_stack([320 + p.focal * x / z, 240 + p.focal * y / z])
 
 
 def in_frame(seen: Array) -> bool:
@@ -139,12 +140,13 @@ def test_f_and_p_are_those_of_the_definition_in_every_state(p: EpipolarParams) -
     for side, P in (("left", s.P_left), ("right", s.P_right)):
         R, C = pose(p, side)
         np.testing.assert_allclose(P, s.K @ np.column_stack([R.T, -R.T @ C]), rtol=0, atol=1e-9)
-    assert (s.F is None) == (math.dist(p.left, p.right) == 0.0)
-    if s.F is None or math.dist(p.left, p.right) < 1e-3:
+    apart = math.dist(p.left, p.right)
+    assert s.F is None if apart == 0.0 else s.F is not None or apart < 1e-12
+    if s.F is None or apart < 1e-3:
         return
     assert s.rank == 2
     assert np.linalg.norm(s.F) == pytest.approx(1.0, abs=1e-12)
-    assert s.F.ravel()[np.abs(s.F).argmax()] > 0
+    assert s.F.max() >= -s.F.min() * (1 - 1e-9)
     # Any F of these cameras: [e']ₓ P' P⁺ (Hartley and Zisserman, eq. 9.1)
     e = s.P_right @ [*p.left, 1]
     expected = np.array([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]]) @ s.P_right @ np.linalg.pinv(s.P_left)
@@ -159,7 +161,7 @@ def test_epipoles_are_where_each_camera_sees_the_other(p: EpipolarParams) -> Non
         return
     for side, other, pole in (("left", p.right, s.epipole_left_pixel), ("right", p.left, s.epipole_right_pixel)):
         (seen,) = pixels(p, side, [other])
-        if np.abs(seen).max() < 1e4:
+        if np.abs(seen).max() < 1e4:  # neither at infinity nor almost
             assert pole == pytest.approx(tuple(seen), abs=1e-4)
 
 
