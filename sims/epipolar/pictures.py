@@ -45,8 +45,10 @@ def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
 
 
 def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark: str) -> str:
-    point = "no pixel" if pixel is None else f"p{mark} {figure(pixel[0], 1)}, {figure(pixel[1], 1)}"
-    return f"{point}; no e{mark}" if s.F is None else f"{point}; e{mark} {epipole_in_words(epipole)}"
+    """Short: small panes have room for a few words."""
+    point = f"no p{mark}" if pixel is None else f"p{mark} {figure(pixel[0], 0)}, {figure(pixel[1], 0)}"
+    pole = "∞" if epipole is None else epipole_in_words(epipole).removeprefix("at ")
+    return f"{point}; no e{mark}" if s.F is None else f"{point}; e{mark} {pole}"
 
 
 @lru_cache(maxsize=2)

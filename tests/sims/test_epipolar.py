@@ -61,6 +61,10 @@ def in_frame(seen: Array) -> bool:
     return bool(((seen >= -0.5) & (seen <= (639.5, 479.5))).all())
 
 
+def close(seen: Any, expected: Any, *, within: float = 0.0) -> None:
+    np.testing.assert_allclose(np.asarray(seen, dtype=float), np.asarray(expected, dtype=float), rtol=0, atol=within)
+
+
 def lines_of(s: EpipolarSolution, side: str) -> Array:
     lines = s.lines_left if side == "left" else s.lines_right
     assert lines is not None
@@ -80,19 +84,19 @@ each_preset = pytest.mark.parametrize("name", PRESETS)
 def test_defaults_are_a_rectified_pair() -> None:
     s = solve(START)
     half = math.sqrt(0.5)
-    np.testing.assert_allclose(s.K, [[600, 0, 320], [0, 600, 240], [0, 0, 1]])
+    close(s.K, [[600, 0, 320], [0, 600, 240], [0, 0, 1]])
     assert s.F is not None
     assert s.E is not None
-    np.testing.assert_allclose(s.F, [[0, 0, 0], [0, 0, half], [0, -half, 0]], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(s.E, [[0, 0, 0], [0, 0, half], [0, -half, 0]], rtol=0, atol=1e-12)
+    close(s.F, [[0, 0, 0], [0, 0, half], [0, -half, 0]], within=1e-12)
+    close(s.E, [[0, 0, 0], [0, 0, half], [0, -half, 0]], within=1e-12)
     assert s.rank == 2
-    np.testing.assert_allclose(s.singular_values, [half, half, 0], rtol=0, atol=1e-12)  # type: ignore[arg-type]
+    close(s.singular_values, [half, half, 0], within=1e-12)
     assert s.epipole_left_pixel is s.epipole_right_pixel is None, "at infinity"
-    np.testing.assert_allclose(s.epipole_left, [1, 0, 0], rtol=0, atol=1e-12)  # type: ignore[arg-type]
+    close(s.epipole_left, [1, 0, 0], within=1e-12)
     assert s.pixel_left == pytest.approx((455, 210))
     assert s.pixel_right == pytest.approx((275, 210))
     for line in (s.line_left, s.line_right):
-        np.testing.assert_allclose(np.abs(line), [0, 1, 210], rtol=0, atol=1e-9)  # type: ignore[arg-type]
+        close(np.abs(line), [0, 1, 210], within=1e-9)
 
 
 @each_preset
@@ -102,7 +106,7 @@ def test_all_shown_points_lie_in_both_pictures(name: str, count: int) -> None:
     s = solve(p)
     for side in SIDES:
         assert len(pixels_of(s, side)) == count
-        np.testing.assert_allclose(pixels_of(s, side), pixels(p, side, s.points), rtol=0, atol=1e-9)
+        close(pixels_of(s, side), pixels(p, side, s.points), within=1e-9)
         assert in_frame(pixels_of(s, side))
 
 
@@ -139,7 +143,7 @@ def test_f_and_p_are_those_of_the_definition_in_every_state(p: EpipolarParams) -
     jsonable(s)
     for side, P in (("left", s.P_left), ("right", s.P_right)):
         R, C = pose(p, side)
-        np.testing.assert_allclose(P, s.K @ np.column_stack([R.T, -R.T @ C]), rtol=0, atol=1e-9)
+        close(P, s.K @ np.column_stack([R.T, -R.T @ C]), within=1e-9)
     apart = math.dist(p.left, p.right)
     assert s.F is None if apart == 0.0 else s.F is not None or apart < 1e-12
     if s.F is None or apart < 1e-3:
@@ -151,7 +155,7 @@ def test_f_and_p_are_those_of_the_definition_in_every_state(p: EpipolarParams) -
     e = s.P_right @ [*p.left, 1]
     expected = np.array([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]]) @ s.P_right @ np.linalg.pinv(s.P_left)
     expected /= np.linalg.norm(expected)
-    np.testing.assert_allclose(s.F, np.sign((expected * s.F).sum()) * expected, rtol=0, atol=1e-8)
+    close(s.F, np.sign((expected * s.F).sum()) * expected, within=1e-8)
 
 
 @given(states)
@@ -185,8 +189,8 @@ def test_moving_the_point_in_its_epipolar_plane_keeps_both_lines() -> None:
     before, after = (solve(START.changed({"point": point})) for point in ((0.3, 4.0, 1.2), (-0.4, 2.0, 1.1)))
     assert before.pixel_left != after.pixel_left
     assert before.pixel_right != after.pixel_right
-    np.testing.assert_allclose(before.line_left, after.line_left, atol=1e-9)  # type: ignore[arg-type]
-    np.testing.assert_allclose(before.line_right, after.line_right, atol=1e-9)  # type: ignore[arg-type]
+    close(before.line_left, after.line_left, within=1e-9)
+    close(before.line_right, after.line_right, within=1e-9)
 
 
 # ---- what doesn't exist
@@ -226,7 +230,7 @@ def test_points_that_are_not_in_front_have_no_pixel() -> None:
     assert s.pixel_left is not None
     assert s.line_right is not None, "its left pixel has a line all the same"
     s = solve(START.changed(SIM.states["behind both"]))
-    assert s.pixel_left is s.pixel_right is s.line_left is s.line_right is None
+    assert all(each is None for each in (s.pixel_left, s.pixel_right, s.line_left, s.line_right))
     assert s.F is not None
 
 
@@ -251,7 +255,7 @@ def test_a_picked_pixel_stands_in_the_link_and_has_its_line_in_the_other_picture
     assert pick.startswith(s.picked.side)
     F = s.F if s.picked.side == "left" else s.F.T
     expected = F @ [*s.picked.pixel, 1]
-    np.testing.assert_allclose(s.picked.line, expected / math.hypot(*expected[:2]), rtol=0, atol=1e-9)  # type: ignore[arg-type]
+    close(s.picked.line, expected / math.hypot(*expected[:2]), within=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -274,8 +278,8 @@ def test_pictures_are_picked_in_and_the_pick_is_cleared() -> None:
     assert SIM.handles["pick_left"](START, (12.5, 30.25)) == {"pick": "left:12.5,30.25"}
     assert SIM.handles["pick_right"](START, (-4.0, 600.0)) == {"pick": "right:0,479"}
     picked = START.changed({"pick": "left:1,2"})
-    clear = next(action for action in SIM.actions if action.name == "clear-pick")
-    assert picked.changed(clear.run(picked)) == START  # type: ignore[arg-type]
+    clear: Any = next(action for action in SIM.actions if action.name == "clear-pick")
+    assert picked.changed(clear.run(picked)) == START
 
 
 # ---- F from the points
@@ -307,31 +311,29 @@ def test_a_point_that_one_camera_does_not_see_is_left_out() -> None:
 
 def test_noise_is_of_its_seed_and_makes_an_estimate_that_fits_the_noise_better_than_the_truth() -> None:
     p = START.changed({"points": 12, "noise": 1.0})
-    differences = []
-    for seed in range(40):
-        s = solve(p.changed({"seed": seed}))
-        e = s.estimate
-        assert e.F is not None
-        assert e.difference is not None
-        assert np.linalg.svd(e.F)[1][2] < 1e-12
-        differences.append(e.difference)
-        again = solve(p.changed({"seed": seed}))
-        np.testing.assert_array_equal(e.F, again.estimate.F)  # type: ignore[arg-type]
-        offsets = np.concatenate([e.measured_left - s.pixels_left, e.measured_right - s.pixels_right])
-        assert 0.5 < offsets.std() < 1.6
+    fits = [solve(p.changed({"seed": seed})) for seed in range(40)]
+    for seed, s in enumerate(fits):
+        assert s.estimate.F is not None
+        assert np.linalg.svd(s.estimate.F)[1][2] < 1e-12
+        close(s.estimate.F, solve(p.changed({"seed": seed})).estimate.F)
+        measured = s.estimate.measured_left - s.pixels_left, s.estimate.measured_right - s.pixels_right
+        assert 0.5 < np.concatenate(measured).std() < 1.6
         np.testing.assert_array_equal(s.pixels_left, solve(p.changed({"noise": 0.0})).pixels_left)
-    fits = [solve(p.changed({"seed": seed})).estimate for seed in range(40)]
-    assert np.mean([e.noisy_rms for e in fits]) < np.mean([e.noisy_rms_true for e in fits])  # type: ignore[arg-type]
-    less = [solve(p.changed({"seed": seed, "noise": 0.1})).estimate.difference for seed in range(40)]
-    assert np.median(less) < 0.3 * np.median(differences)  # type: ignore[arg-type]
+    assert mean(fits, "noisy_rms") < mean(fits, "noisy_rms_true")
+    less = [solve(p.changed({"seed": seed, "noise": 0.1})) for seed in range(40)]
+    assert mean(less, "difference") < 0.3 * mean(fits, "difference")
+
+
+def mean(solutions: list[EpipolarSolution], name: str) -> float:
+    return float(np.mean([getattr(s.estimate, name) for s in solutions]))
 
 
 def test_the_button_shows_noise_and_then_the_next() -> None:
-    button = next(action for action in SIM.actions if action.name == "new-sample").run
-    noisy = START.changed(button(START))  # type: ignore[arg-type]
+    button: Any = next(action for action in SIM.actions if action.name == "new-sample").run
+    noisy = START.changed(button(START))
     assert (noisy.noise, noisy.points, noisy.seed) == (1.0, 12, 0)
-    assert noisy.changed(button(noisy)).seed == 1  # type: ignore[arg-type]
-    assert START.changed(button(noisy.changed({"seed": 9999}))).seed == 0  # type: ignore[arg-type]
+    assert noisy.changed(button(noisy)).seed == 1
+    assert START.changed(button(noisy.changed({"seed": 9999}))).seed == 0
 
 
 # ---- shown equals drawn
@@ -376,22 +378,22 @@ def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: Epi
     for side in SIDES:
         R, C = pose(params, side)
         seen = model.world_pose(f"/{side}")
-        np.testing.assert_allclose(seen[:3, :3], R, rtol=0, atol=1e-9)
+        close(seen[:3, :3], R, within=1e-9)
         np.testing.assert_array_equal(seen[:3, 3], C)
         np.testing.assert_array_equal(model.world_pose(f"/{side}_center")[:3, 3], C)
         corners = pixels(params, side, model.points(f"/{side}/picture"))
-        np.testing.assert_allclose(corners[[0, 2]], [(-0.5, -0.5), (639.5, 479.5)], rtol=0, atol=2e-2)
+        close(corners[[0, 2]], [(-0.5, -0.5), (639.5, 479.5)], within=2e-2)
         ray = model.points("/rays")[SIDES.index(side)]
-        np.testing.assert_allclose(ray, [C, params.point], rtol=0, atol=1e-6)
+        close(ray, [C, params.point], within=1e-6)
         pixel = s.pixel_left if side == "left" else s.pixel_right
         assert model.visible(f"/{side}/pixel") == (pixel is not None and in_frame(np.array([pixel])))
         if model.visible(f"/{side}/pixel"):
             place = model.world_pose(f"/{side}/pixel")[None, :3, 3]
-            np.testing.assert_allclose(pixels(params, side, place), [pixel], rtol=0, atol=1e-6)
+            close(pixels(params, side, place), [pixel], within=1e-6)
     np.testing.assert_array_equal(model.world_pose("/point")[:3, 3], params.point)
-    np.testing.assert_allclose(ends(rig, "/baseline"), [params.left, params.right], rtol=0, atol=1e-6)
+    close(ends(rig, "/baseline"), [params.left, params.right], within=1e-6)
     if params.points > 1:
-        np.testing.assert_allclose(model.points("/others"), s.points[1:], rtol=0, atol=1e-6)
+        close(model.points("/others"), s.points[1:], within=1e-6)
 
 
 def crosses(lines: Array) -> bool:
@@ -455,8 +457,8 @@ def test_the_picked_pixel_is_drawn(rig: Rig, params: EpipolarParams) -> None:
         return
     side, other = s.picked.side, "right" if s.picked.side == "left" else "left"
     start, end = ends(rig, "/pick_ray")
-    np.testing.assert_allclose(start, getattr(params, side), rtol=0, atol=1e-6)
-    np.testing.assert_allclose(pixels(params, side, [end]), [s.picked.pixel], rtol=0, atol=1e-2)
+    close(start, getattr(params, side), within=1e-6)
+    close(pixels(params, side, [end]), [s.picked.pixel], within=1e-2)
     assert not model.visible(f"/{side}/picked_line")
     if model.visible(f"/{other}/picked_line"):
         assert s.picked.line is not None
@@ -491,11 +493,11 @@ def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
         held = next(g for g in shapes(pane.svg, "g") if g.get("data-handle") == f"{side}_pixel")
         assert (float(held["data-x"]), float(held["data-y"])) == (s.pixel_left if side == "left" else s.pixel_right)
         dashed = [d for d in shapes(pane.svg, "line") if d.get("stroke-dasharray") == "7 5"]
-        line = s.line_left if side == "left" else s.line_right
+        line: Any = s.line_left if side == "left" else s.line_right
         assert len(dashed) == (line is not None)
         for d in dashed:
             for k in ("1", "2"):
-                assert abs(line @ [float(d[f"x{k}"]), float(d[f"y{k}"]), 1]) < 0.02  # type: ignore[operator]
+                assert abs(np.dot(line, [float(d[f"x{k}"]), float(d[f"y{k}"]), 1])) < 0.02
 
 
 @pytest.mark.parametrize(
@@ -552,7 +554,7 @@ def test_what_is_dragged_in_the_scene_follows(rig: Rig, node: str, name: str) ->
     rig.browser.drag(node, (0.1, 0.2, 1.1), aim)
     rig.settle()
     assert getattr(rig.session.params, name) == pytest.approx(aim)
-    np.testing.assert_allclose(rig.model.world_pose(node)[:3, 3], aim, rtol=0, atol=1e-9)
+    close(rig.model.world_pose(node)[:3, 3], aim, within=1e-9)
 
 
 def test_a_camera_dragged_onto_the_other_ends_epipolar_geometry_and_away_again_restores_it(rig: Rig) -> None:
@@ -575,7 +577,7 @@ def test_holding_the_point_in_a_picture_puts_it_there_at_its_depth(
     R, C = pose(p, side)
     depth = float((np.array(p.point) - C) @ R[:, 2])
     place = SIM.handles[f"{side}_pixel"](p, (u, v))["point"]
-    np.testing.assert_allclose(pixels(p, side, [place]), [(u, v)], rtol=0, atol=1e-6)
+    close(pixels(p, side, [place]), [(u, v)], within=1e-6)
     if depth > 0.05:
         assert (np.array(place) - C) @ R[:, 2] == pytest.approx(depth)
 

@@ -1,0 +1,159 @@
+"""epipolar: hands on cameras and points, in the scene, in the pictures and on the plan; picking a pixel; presets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner, box
+from tests.e2e.picture import Picture, project
+
+Array = npt.NDArray[np.float64]
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs, pictures and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        scene, params = learner.scene, learner.params
+        np.testing.assert_allclose(scene.world_pose("/point")[:3, 3], params["point"], rtol=0, atol=1e-6)
+        for side in ("left", "right"):
+            np.testing.assert_allclose(scene.world_pose(f"/{side}")[:3, 3], params[side], rtol=0, atol=1e-6)
+        assert solution["F"] is None or learner.reads("F", 1000 * np.array(solution["F"]))
+        assert solution["line_right"] is None or learner.reads("l′", solution["line_right"])
+        assert handle(learner, "left_pixel") == solution["pixel_left"]
+        return solution
+
+    return learner.until(said)
+
+
+def handle(learner: Learner, name: str) -> list[float] | None:
+    """Where a handle of a picture says that it is."""
+    place: list[float] | None = learner.frame.evaluate(
+        "(name) => { const d = document.querySelector(`[data-handle=${name}]`)?.dataset; return d ? [Number(d.x), Number(d.y)] : null; }",
+        name,
+    )
+    return place
+
+
+def middle(learner: Learner, name: str) -> tuple[float, float]:
+    at = box(learner.frame.locator(f"[data-handle={name}] .s3-ring"))
+    return at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+
+
+def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float) -> None:
+    """Press the mouse at a place, move it, and let go."""
+    mouse, (x, y) = learner.page.mouse, start
+    mouse.move(x - 3, y - 3)
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + dx, y + dy, steps=6)
+    mouse.up()
+
+
+def test_a_click_in_a_picture_and_arrow_keys_pick_a_pixel_whose_line_appears_in_the_other(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
+    agree(learner)
+    frame = box(learner.frame.locator('svg[data-pane="right"]'))
+    learner.page.mouse.click(frame["x"] + frame["width"] * 0.25, frame["y"] + frame["height"] * 0.75)
+    learner.until(lambda: learner.params["pick"] is not None)
+    solution = agree(learner)
+    picked = solution["picked"]
+    assert picked["side"] == "right"
+    np.testing.assert_allclose(picked["pixel"], [160, 360], atol=5)
+    assert learner.until(lambda: handle(learner, "pick_right")) == picked["pixel"]
+    drawn = learner.frame.locator('svg[data-pane="left"] line[stroke="var(--held)"]')
+    ends = [float(drawn.get_attribute(k) or "nan") for k in ("x1", "y1", "x2", "y2")]
+    for u, v in (ends[:2], ends[2:]):
+        assert abs(np.dot(picked["line"], [u, v, 1])) < 0.05
+    assert learner.scene.visible("/left/picked_line")
+
+    u, v = picked["pixel"]
+    focus = learner.frame.locator("[data-handle=pick_right]:focus")
+    focus.wait_for()
+    learner.page.keyboard.press("ArrowRight")
+    learner.until(lambda: handle(learner, "pick_right") == pytest.approx([u + 1, v]))
+    focus.wait_for()
+    agree(learner)
+
+    learner.frame.locator("[data-pick=pick_left]").press("Enter")
+    agree(learner, pick="left:319.5,239.5")
+    learner.frame.locator("[data-handle=pick_left]:focus").wait_for()
+    assert handle(learner, "pick_right") is None
+    learner.press("Clear picked pixel")
+    agree(learner, pick=None)
+
+
+def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_plan(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed")
+    before = agree(learner, point=[0.3, 4, 1.2])
+    pull(learner, middle(learner, "left_pixel"), -12, 8)
+    learner.until(lambda: learner.params["point"] != [0.3, 4, 1.2])
+    after = agree(learner)
+    assert after["pixel_left"][0] < before["pixel_left"][0] - 10
+    assert after["pixel_left"][1] > before["pixel_left"][1] + 10, "rows count downwards"
+    assert learner.params["point"][1] == pytest.approx(4.0), "its depth stays"
+    assert after["residual"] == pytest.approx(0.0, abs=1e-9)
+
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    place = learner.scene.world_pose("/right_center")[:3, 3]
+    learner.until(lambda: Picture(learner).shows("held", place, within=8) or pytest.fail("nothing to hold"))
+    pull(learner, project(place, learner.sockets.camera, canvas), 30, -6)
+    learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
+    agree(learner)
+
+    held = learner.frame.locator("[data-handle=plan_left]")
+    held.scroll_into_view_if_needed()
+    held.press("ArrowUp")
+    learner.until(lambda: learner.params["left"] != [-0.6, 0, 1])
+    agree(learner)
+    x, y, z = learner.params["left"]
+    assert (x, z) == (pytest.approx(-0.6), 1)
+    assert 0.01 < y < 0.05, "up on the plan is forward"
+
+
+def test_presets_and_controls_answer(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed?theme=light", reduced_motion="reduce")
+    learner.press("Forward motion")
+    solution = agree(learner, left=[0, -0.6, 1], right=[0, 0.9, 1])
+    assert solution["epipole_left_pixel"] == pytest.approx([320, 240])
+    assert learner.scene.visible("/left/epipole")
+    assert learner.reads("e", solution["epipole_left_pixel"], 1)
+    learner.press("Vertical pair")
+    assert agree(learner, left=[0, 0, 0.65], right=[0, 0, 1.45])["epipole_left_pixel"] is None
+    learner.press_keys("left_pan", "ArrowRight")
+    agree(learner, left_pan=0.5)
+    learner.control("checkbox", "show_all_lines").click()
+    agree(learner, show_all_lines=True)
+    learner.until(lambda: learner.scene.visible("/left/all_lines"))
+    learner.control("checkbox", "show_plane").click()
+    agree(learner, show_plane=False)
+    learner.until(lambda: not learner.scene.visible("/plane"))
+    learner.frame.get_by_text("To estimate F takes 8 points").wait_for()
+    learner.press("Estimate F, new noise")
+    noisy = agree(learner, points=12, noise=1, seed=0)
+    learner.press("Estimate F, new noise")
+    assert agree(learner, seed=1)["estimate"]["F"] != noisy["estimate"]["F"]
+    learner.press("Reset")
+    agree(learner, left=[-0.6, 0, 1], points=6, noise=0)
+
+
+def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed?left=0,0,1&right=0.01,0,1")
+    boxes = learner.frame.get_by_role("textbox", name="Right camera")
+    boxes.nth(0).fill("0")
+    boxes.nth(0).press("Enter")
+    solution = agree(learner, right=[0, 0, 1])
+    assert solution["F"] is None
+    assert solution["pixel_left"] is not None
+    assert any("no baseline" in text for text in learner.scene.labels().values())
+    learner.frame.get_by_text("without a baseline there is no epipolar plane").wait_for()
+    learner.until(lambda: "no F" in learner.spoken())
+    boxes.nth(0).fill("0.5")
+    boxes.nth(0).press("Enter")
+    assert agree(learner, right=[0.5, 0, 1])["rank"] == 2
