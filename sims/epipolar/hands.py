@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from sims.epipolar.model import EpipolarParams, Side
-from sims.epipolar.solution import camera
+from sims.epipolar.rig import camera
 
 NEAREST = 0.05
 """Metres before a camera that a point which is held in its picture keeps."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sims.epipolar.drawn import in_picture
+from sims.epipolar.estimate import Estimate
 from sims.epipolar.model import EpipolarParams, Pixel
-from sims.epipolar.solution import EpipolarSolution, Estimate
+from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
-PRIME = "<mi>{}</mi><mo>′</mo>"
 RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
 RIGHT_LINE = "<msup><mi>l</mi><mo>′</mo></msup>"
 RIGHT_EPIPOLE = "<msup><mi>e</mi><mo>′</mo></msup>"

@@ -96,6 +96,7 @@ def test_defaults_are_a_rectified_pair() -> None:
     assert s.pixel_left == pytest.approx((455, 210))
     assert s.pixel_right == pytest.approx((275, 210))
     for line in (s.line_left, s.line_right):
+        assert line is not None
         close(np.abs(line), [0, 1, 210], within=1e-9)
 
 
