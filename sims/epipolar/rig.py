@@ -17,7 +17,6 @@ from geometry.epipolar import (
     epipole_pixel,
     epipoles,
     essential,
-    fundamental,
     normalize,
 )
 from geometry.rotations import axis_rotation
@@ -68,8 +67,11 @@ def camera(center: Place, pan: float, focal: float) -> Camera:
     return Camera.from_intrinsics(focal, focal, *CENTER, T_camera_world=T)
 
 
-def _orientation(camera: Camera) -> Quaternion:
-    w, x, y, z = quaternion.from_matrix(camera.R.T).tolist()
+@lru_cache(maxsize=256)
+def _orientation(pan: float) -> Quaternion:
+    """Of a level camera that is turned by degrees about the vertical, in the world."""
+    turned = axis_rotation("z", math.radians(pan)) @ R_WORLD_LEVEL
+    w, x, y, z = quaternion.from_matrix(turned).tolist()
     return w, x, y, z
 
 
@@ -77,11 +79,12 @@ def _orientation(camera: Camera) -> Quaternion:
 def pair(left: Place, right: Place, left_pan: float, right_pan: float, focal: float) -> Pair:
     """Both cameras, and their epipolar geometry if they have any."""
     first, second = camera(left, left_pan, focal), camera(right, right_pan, focal)
-    turned = _orientation(first), _orientation(second)
+    turned = _orientation(left_pan), _orientation(right_pan)
     try:
-        F, E = fundamental(first, second), normalize(essential(first, second))
+        E = normalize(essential(first, second))
     except GeometryError:  # both at one place
         return Pair(first, second, turned)
+    F = normalize(second.K_inverse.T @ E @ first.K_inverse)
     values = np.asarray(np.linalg.svd(F, compute_uv=False), dtype=np.float64)
     ends = epipoles(F)
     return Pair(
