@@ -65,7 +65,7 @@ def test_a_click_in_a_picture_and_arrow_keys_pick_a_pixel_whose_line_appears_in_
     solution = agree(learner)
     picked = solution["picked"]
     assert picked["side"] == "right"
-    np.testing.assert_allclose(picked["pixel"], [160, 360], atol=5)
+    np.testing.assert_allclose(picked["pixel"], [160, 360], atol=8)
     assert learner.until(lambda: handle(learner, "pick_right")) == picked["pixel"]
     drawn = learner.frame.locator('svg[data-pane="left"] line[stroke="var(--held)"]')
     ends = [float(drawn.get_attribute(k) or "nan") for k in ("x1", "y1", "x2", "y2")]
@@ -102,7 +102,7 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
 
     canvas = box(learner.frame.locator("canvas[data-engine]"))
     place = learner.scene.world_pose("/right_center")[:3, 3]
-    learner.until(lambda: Picture(learner).shows("held", place, within=8) or pytest.fail("nothing to hold"))
+    learner.until(lambda: Picture(learner).shows("held", place, within=8))
     pull(learner, project(place, learner.sockets.camera, canvas), 30, -6)
     learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
     agree(learner)
