@@ -33,7 +33,7 @@ class EpipolarScene:
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
         self.others = stage.cloud("/others", OTHERS[:0], "ink", size=0.045)
         self.drops = stage.lines("/drops", np.zeros((2, 3)), "ghost", width=1.0)
-        self.grips = [stage.grip(f"/{name}_center", 0.07, halo=2.6) for name in ("left", "right")]
+        self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
         self.point = stage.grip("/point", 0.06, halo=2.4)
         stage.label("/point/label", "P", (0.0, 0.0, 0.26))
         self.drop = stage.lines("/point/drop", np.zeros((2, 3)), "ghost", width=1.2)
