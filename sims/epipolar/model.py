@@ -69,12 +69,12 @@ class EpipolarParams(Params):
     )
     show_top: bool = switch(True, title="Show from above", description="A plan of the scene below the pictures")
     noise: float = number(
-        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ", group="Estimate F from the points",
+        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
         description="Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off",
     )  # fmt: skip
     seed: int = number(
         0, 0, LAST_SEED, step=1, title="Sample", description="Seed of the noise: the same seed, the same noise",
-        control="number", group="Estimate F from the points",
+        control="number",
     )  # fmt: skip
     pick: str | None = text(
         title="Picked pixel", description="A pixel of one picture; its epipolar line is shown in the other",
