@@ -221,6 +221,19 @@ class Learner:
         mouse.move(track["x"] + track["width"] * (value - low) / (high - low), y, steps=6)
         mouse.up()
 
+    def pull(self, start: tuple[float, float], dx: float, dy: float, *, key: str = "") -> None:
+        """Press the mouse at a place on the page, move it, and let go; the key is held meanwhile."""
+        mouse, keyboard, (x, y) = self.page.mouse, self.page.keyboard, start
+        mouse.move(x - 3, y - 3)
+        mouse.move(x, y)
+        if key:
+            keyboard.down(key)
+        mouse.down()
+        mouse.move(x + dx, y + dy, steps=8)
+        mouse.up()
+        if key:
+            keyboard.up(key)
+
     def press_keys(self, name: str, *keys: str) -> None:
         """Keys on a slider's thumb."""
         thumb = self.control("slider", name)

@@ -46,16 +46,6 @@ def place_of(learner: Learner, node: str) -> tuple[float, float]:
     return project(learner.scene.world_pose(node)[:3, 3], learner.sockets.camera, canvas)
 
 
-def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float) -> None:
-    """Press the mouse at a place, move it, and let go."""
-    mouse, (x, y) = learner.page.mouse, start
-    mouse.move(x - 3, y - 3)
-    mouse.move(x, y)
-    mouse.down()
-    mouse.move(x + dx, y + dy, steps=8)
-    mouse.up()
-
-
 def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: Classroom) -> None:
     learner = classroom.open("camera/embed?fy=300")
     learner.press_keys("fx", "ArrowRight")
@@ -108,7 +98,7 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
     learner = classroom.open("camera/embed")
     agree(learner, pan=0)
     x, y = place_of(learner, "/eye")
-    pull(learner, (x, y), -20, -16)
+    learner.pull((x, y), -20, -16)
     learner.until(lambda: np.testing.assert_allclose(place_of(learner, "/eye"), [x - 20, y - 16], atol=3))
     solution = agree(learner, pan=0, tilt=0)
     assert np.linalg.norm(np.subtract(solution["center"], [0, -4, 1.2])) > 0.1
@@ -117,7 +107,7 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
     )
     center = solution["center"]
     x, y = place_of(learner, "/look")
-    pull(learner, (x, y), -25, -10)
+    learner.pull((x, y), -25, -10)
     learner.until(lambda: learner.params["pan"] != 0)
     solution = agree(learner, position=center, roll=0)
     assert learner.params["pan"] > 0.0

@@ -89,12 +89,7 @@ def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> No
     canvas = box(learner.frame.locator("canvas[data-engine]"))
 
     x, y = project(before, camera, canvas)
-    mouse = learner.page.mouse
-    mouse.move(x - 3, y - 3)
-    mouse.move(x, y)
-    mouse.down()
-    mouse.move(x - 60, y + 35, steps=8)
-    mouse.up()
+    learner.pull((x, y), -60, 35)
     learner.until(lambda: learner.params["point"] != [-0.6, 1, 0.8])
     aim = (x - 60, y + 35)
     learner.until(lambda: np.testing.assert_allclose(project(held(learner), camera, canvas), aim, atol=3))

@@ -46,16 +46,6 @@ def middle(learner: Learner, name: str) -> tuple[float, float]:
     return at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
 
 
-def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float) -> None:
-    """Press the mouse at a place, move it, and let go."""
-    mouse, (x, y) = learner.page.mouse, start
-    mouse.move(x - 3, y - 3)
-    mouse.move(x, y)
-    mouse.down()
-    mouse.move(x + dx, y + dy, steps=6)
-    mouse.up()
-
-
 def test_a_click_in_a_picture_and_arrow_keys_pick_a_pixel_whose_line_appears_in_the_other(classroom: Classroom) -> None:
     learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
     agree(learner)
@@ -92,7 +82,7 @@ def test_a_click_in_a_picture_and_arrow_keys_pick_a_pixel_whose_line_appears_in_
 def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_plan(classroom: Classroom) -> None:
     learner = classroom.open("epipolar/embed")
     before = agree(learner, point=[0.3, 4, 1.2])
-    pull(learner, middle(learner, "left_pixel"), -12, 8)
+    learner.pull(middle(learner, "left_pixel"), -12, 8)
     learner.until(lambda: learner.params["point"] != [0.3, 4, 1.2])
     after = agree(learner)
     assert after["pixel_left"][0] < before["pixel_left"][0] - 10
@@ -103,7 +93,7 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
     canvas = box(learner.frame.locator("canvas[data-engine]"))
     place = learner.scene.world_pose("/right_center")[:3, 3]
     learner.until(lambda: Picture(learner).shows("held", place, within=8))
-    pull(learner, project(place, learner.sockets.camera, canvas), 30, -6)
+    learner.pull(project(place, learner.sockets.camera, canvas), 30, -6)
     learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
     agree(learner)
 

@@ -125,12 +125,7 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     learner = classroom.open("transform-chain/embed?angles=20,-40,70")
     agree(learner, angles=[20, -40, 70])
     x, y = grip(learner)
-    mouse = learner.page.mouse
-    mouse.move(x - 2, y - 2)
-    mouse.move(x, y)
-    mouse.down()
-    mouse.move(x - 30, y - 24, steps=8)
-    mouse.up()
+    learner.pull((x, y), -30, -24)
     learner.until(lambda: learner.params["angles"] != [20, -40, 70])
     learner.until(lambda: np.testing.assert_allclose(grip(learner), [x - 30, y - 24], atol=3))
     solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])

@@ -68,21 +68,6 @@ def grip(learner: Learner) -> tuple[float, float]:
     return project(learner.scene.world_pose("/point")[:3, 3], learner.sockets.camera, canvas)
 
 
-def pull(learner: Learner, start: tuple[float, float], dx: float, dy: float, *, key: str = "") -> None:
-    """Press the mouse at a place, move it, and let go; the key is held meanwhile."""
-    mouse, keyboard = learner.page.mouse, learner.page.keyboard
-    x, y = start
-    mouse.move(x - 3, y - 3)
-    mouse.move(x, y)
-    if key:
-        keyboard.down(key)
-    mouse.down()
-    mouse.move(x + dx, y + dy, steps=8)
-    mouse.up()
-    if key:
-        keyboard.up(key)
-
-
 def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     learner = classroom.open("triangulation/embed")
     solution = agree(learner, left_uv=[410, 210], right_uv=[320, 210])
@@ -96,7 +81,7 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     assert picture.shows("held", at, within=12), f"nothing to hold: {picture.around(at)}"
 
     x, y = grip(learner)
-    pull(learner, (x, y), 24, -30)
+    learner.pull((x, y), 24, -30)
     learner.until(lambda: learner.params["left_uv"] != [410, 210])
     learner.until(lambda: np.testing.assert_allclose(grip(learner), [x + 24, y - 30], atol=3))
     solution = agree(learner)
@@ -111,14 +96,14 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     shown(learner)
 
     x, y = grip(learner)
-    pull(learner, (x, y), 4, 40, key="Shift")
+    learner.pull((x, y), 4, 40, key="Shift")
     learner.until(lambda: not np.allclose(learner.solved()["point"], after, atol=0.05))
     step = np.abs(np.subtract(agree(learner)["point"], after))
     assert np.count_nonzero(step > 1e-6) == 1, "with Shift it moves along one axis"
 
     version = learner.sockets.state["version"]
     canvas = box(learner.frame.locator("canvas[data-engine]"))
-    pull(learner, (canvas["x"] + 40, canvas["y"] + canvas["height"] - 40), 60, -10)
+    learner.pull((canvas["x"] + 40, canvas["y"] + canvas["height"] - 40), 60, -10)
     learner.until(lambda: not np.allclose(learner.sockets.camera["position"], camera["position"], atol=0.01))
     assert learner.sockets.state["version"] == version, "a drag on empty space turns the view, and nothing else"
     shown(learner)
@@ -142,7 +127,7 @@ def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
     frame = learner.frame
     scale = box(frame.locator("svg[data-pane=left]"))["width"] / 640
     core = box(frame.locator("[data-handle=left_uv] .s3-core"))
-    pull(learner, (core["x"] + core["width"] / 2, core["y"] + core["height"] / 2), 20, -6)
+    learner.pull((core["x"] + core["width"] / 2, core["y"] + core["height"] / 2), 20, -6)
     learner.until(
         lambda: np.testing.assert_allclose(learner.params["left_uv"], [410 + 20 / scale, 210 - 6 / scale], atol=1.5)
     )
