@@ -45,9 +45,23 @@ def nlerp(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array, *, long_wa
     t = as_angle("t", t)
     first, last = _arc(start, end, long_way)
     axis, angle = to_axis_angle(multiply(last, conjugate(first)))
+    return _along(first, last, axis, nlerp_angle(angle, t), t)
+
+
+def nlerp_angle(angle: float | Array, t: float | Array) -> Any:
+    """Return how far `nlerp` has turned at t (...), of a turn by an angle (...) in [0, 2π] radians."""
     cos, sin = cos_sin(0.25 * angle)
-    turned = 0.5 * angle + 2.0 * np.arctan2((2.0 * t - 1.0) * sin, cos)
-    return _along(first, last, axis, turned, t)
+    return 0.5 * angle + 2.0 * np.arctan2((2.0 * t - 1.0) * sin, cos)
+
+
+def turn_between(start: npt.ArrayLike, end: npt.ArrayLike, *, long_way: bool = False) -> tuple[Array, Array]:
+    """Return the axis (..., 3) and angle (...) in [0, 2π] radians of the turn that `slerp` and `nlerp` make.
+
+    Of start (..., 4) and end, by their ties; without a turn the axis is z.
+    Raises GeometryError for a zero quaternion; in a batch it gives NaN.
+    """
+    first, last = _arc(start, end, long_way)
+    return to_axis_angle(multiply(last, conjugate(first)))
 
 
 def _arc(start: npt.ArrayLike, end: npt.ArrayLike, long_way: bool) -> tuple[Array, Array]:
@@ -64,6 +78,18 @@ def _along(first: Array, last: Array, axis: Array, turned: Any, t: float | Array
         return q
     moment = np.asarray(t)[..., None]
     return np.where(moment == 0.0, first, np.where(moment == 1.0, last, q))
+
+
+def turned_by(start: npt.ArrayLike, axis: npt.ArrayLike, angles: npt.ArrayLike) -> Array:
+    """Return the unit quaternions (n, 4) to which turns about an axis (3,) by angles (n,) lead from start (4,).
+
+    What `slerp` gives for many moments, in a fraction of its time. Angles are in radians.
+    Raises GeometryError for a zero quaternion or axis, or an angle that isn't finite.
+    """
+    first = normalize(start)
+    aside = multiply(from_axis_angle(axis, math.pi), first)
+    half = 0.5 * as_finite_array("angles", angles)[..., None]
+    return np.asarray(np.cos(half) * first + np.sin(half) * aside)
 
 
 def euler_interpolation(start: npt.ArrayLike, end: npt.ArrayLike, t: float | Array) -> Array:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Array, Mask, Matrix3, components, cos_sin, each, norm, stack_matrix
+from .arrays import Array, Mask, Matrix3, components, cos_sin, cross, each, norm, stack_matrix
 from .errors import GeometryError, as_angle, as_array, as_finite_array
 
 AXES = ("x", "y", "z")
@@ -36,6 +36,18 @@ def axis_rotation(axis: str, angle: float | Array) -> Array:
         return R
     R[:, :, np.isnan(cos)] = np.nan
     return np.moveaxis(R, (0, 1), (-2, -1))
+
+
+def orbit(axis: npt.ArrayLike, point: npt.ArrayLike, angles: npt.ArrayLike) -> Array:
+    """Return where a point (3,) comes when it is turned about an axis (3,) by angles (n,) in radians: (n, 3).
+
+    The axis has any length but zero, for which GeometryError is raised.
+    Source: Rodrigues' formula.
+    """
+    n, p = as_finite_array("axis", unit(as_array("axis", axis, 3), "axis")), as_finite_array("point", point, 3)
+    turned = as_finite_array("angles", angles)[..., None]
+    along = n * n.dot(p)
+    return np.asarray(along + np.cos(turned) * (p - along) + np.sin(turned) * np.array(cross(n.tolist(), p.tolist())))
 
 
 def skew(vector: npt.ArrayLike) -> Array:

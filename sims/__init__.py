@@ -10,6 +10,7 @@ from sims.epipolar import SIM as EPIPOLAR
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.gimbal_lock import SIM as GIMBAL_LOCK
 from sims.kit.sim import Sim
+from sims.quaternion import SIM as QUATERNION
 from sims.transform_chain import SIM as TRANSFORM_CHAIN
 from sims.triangulation import SIM as TRIANGULATION
 
@@ -17,6 +18,7 @@ SIMS: tuple[Sim[Any, Any], ...] = (
     COORDINATE_FRAMES,
     EULER_ANGLES,
     GIMBAL_LOCK,
+    QUATERNION,
     TRANSFORM_CHAIN,
     CAMERA,
     EPIPOLAR,

@@ -34,11 +34,14 @@ class Pane:
 class Picture:
     """Collects SVG in pixel coordinates; what is outside the frame is clipped."""
 
-    def __init__(self, name: str, title: str, width: int = 640, height: int = 480) -> None:
+    def __init__(
+        self, name: str, title: str, width: int = 640, height: int = 480, *, under: Picture | None = None
+    ) -> None:
+        """`under` is drawn first: what stays the same needn't be made again."""
         self.name, self.title = name, title
         self.width, self.height = width, height
-        self._parts: list[str] = []
-        self._over: list[str] = []
+        self._parts: list[str] = list(under._parts) if under else []
+        self._over: list[str] = list(under._over) if under else []
         self._ground = 'class="s3-frame"'
 
     def line(self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "") -> None:
@@ -47,6 +50,14 @@ class Picture:
         self._parts.append(
             f'<line x1="{a[0]:.2f}" y1="{a[1]:.2f}" x2="{b[0]:.2f}" y2="{b[1]:.2f}" stroke="var(--{role})"'
             f' stroke-width="{width}"{dashed}{css} vector-effect="non-scaling-stroke"/>'
+        )
+
+    def curve(self, points: Iterable[Point], role: str, *, width: float = 2) -> None:
+        """A stroke through points."""
+        path = "L".join([f"{x:.1f} {y:.1f}" for x, y in points])
+        self._parts.append(
+            f'<path d="M{path}" fill="none" stroke="var(--{role})" stroke-width="{width}"'
+            ' stroke-linejoin="round" vector-effect="non-scaling-stroke"/>'
         )
 
     def strokes(

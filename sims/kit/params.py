@@ -224,18 +224,25 @@ def numbers(
     *,
     most: int,
     title: str,
-    entry: str,
     description: str,
     step: float,
+    entry: str = "",
+    least: int = 1,
     unit: str = "",
     group: str = "",
+    control: str = "numbers",
 ) -> Any:
-    """A list of one to `most` numbers, each with a slider that is called as `entry` says: "Joint {} angle"."""
+    """A list of `least` to `most` numbers, each with a slider that is called as `entry` says: "Joint {} angle".
+
+    `control`: numbers or none.
+    """
     hints: Any = {
-        "step": step, "unit": unit, "group": group, "control": "numbers", "low": low, "high": high, "most": most,
-        "entry": entry,
+        "step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high, "most": most,
+        "least": least, "entry": entry,
     }  # fmt: skip
-    return Field(default, min_length=1, max_length=most, title=title, description=description, json_schema_extra=hints)
+    return Field(
+        default, min_length=least, max_length=most, title=title, description=description, json_schema_extra=hints
+    )
 
 
 def letters(
@@ -258,13 +265,16 @@ def vector(
     unit: str = "",
     group: str = "",
     control: str = "vector",
+    presets: Mapping[str, tuple[float, ...]] | None = None,
 ) -> Any:
     """Two or three numbers that belong together; `1,0.5,2` in a link.
 
     `low` and `high` bound every entry, or each its own when they are tuples, as they are where the vector may be
-    absent (None).
+    absent (None). `presets` are values to choose from.
     """
     hints: Any = {"step": step, "unit": unit, "group": group, "control": control, "low": low, "high": high}
+    if presets:
+        hints["presets"] = dict(presets)
     return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
@@ -329,6 +339,8 @@ def entry_bounds(field: FieldInfo) -> tuple[tuple[float, ...], tuple[float, ...]
 
 def field_bounds(field: FieldInfo) -> tuple[float, float]:
     """Declared bounds of a numeric field; for vectors, those that all entries are within."""
+    if "least" in extra(field):
+        return extra(field)["low"], extra(field)["high"]
     if "low" in extra(field):
         lows, highs = entry_bounds(field)
         return min(lows), max(highs)
@@ -375,7 +387,7 @@ def unspell(field: FieldInfo, text: str) -> Any:
     if kind == "switch":
         return {"1": True, "0": False}.get(text)
     if "low" in extra(field):
-        return tuple(text.split(","))
+        return tuple(text.split(",")) if text or extra(field).get("least") != 0 else ()
     return text
 
 
@@ -397,8 +409,8 @@ def allowed_values(field: FieldInfo) -> str:
     if kind == "letters":
         return f"1 to {extra(field)['most']} letters, each one of: {', '.join(extra(field)['labels'])}"
     if "low" in extra(field):
-        ranges = list(zip(*entry_bounds(field), strict=True))
-        count = f"1 to {extra(field)['most']}" if kind == "numbers" else f"{len(ranges)}"
+        ranges = list(zip(*entry_bounds(field), strict=True)) or [field_bounds(field)]
+        count = f"{extra(field)['least']} to {extra(field)['most']}" if "least" in extra(field) else f"{len(ranges)}"
         return f"{count} numbers {_spans(ranges)}, separated by commas"
     low, high = field_bounds(field)
     span = f"from {plain(low)} to {plain(high)}"

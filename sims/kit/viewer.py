@@ -21,6 +21,8 @@ from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import control_id, received, set_property, set_value
 
 ACCENT = (11, 95, 215)
+OTHER = "another"
+"""What a list of presets shows for a value that isn't one of them."""
 
 
 class Host(Protocol):
@@ -81,6 +83,19 @@ class Input(NamedTuple):
 
     handle: Any
     take: Callable[[Any], None]
+
+
+@dataclass(kw_only=True)
+class Preset(Control):
+    """A dropdown beside another control, with names for some of its values."""
+
+    words: Mapping[Any, str]
+
+    def draw(self, params: Params) -> None:
+        set_value(self.handle, self.words.get(getattr(params, self.name), OTHER))
+
+    def reword(self, params: Params) -> None:
+        """Its words don't depend on the state."""
 
 
 @dataclass
@@ -199,7 +214,8 @@ class Viewer:
                 groups.setdefault(extra(field).get("group", ""), []).append(name)
         for group, names in groups.items():
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
-                self._controls += [self._control(params, name) for name in names]
+                for name in names:
+                    self._controls += [self._control(params, name), *self._presets(params, name)]
                 if not group:
                     self._places = [self._typed(typed) for typed in self.sim.typed]
         with gui.add_folder("Actions"):
@@ -253,6 +269,18 @@ class Viewer:
         control = Control(name, handle, label, bounds, offered)
         self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
         return control
+
+    def _presets(self, params: Params, name: str) -> list[Control]:
+        """A list of values for a field to choose from, if it has any; it says so when the value is none of them."""
+        field = type(params).model_fields[name]
+        presets: dict[str, Any] = extra(field).get("presets", {})
+        if not presets:
+            return []
+        handle = self.client.gui.add_dropdown(
+            f"{field.title}: preset", (*presets, OTHER), hint="Values to choose from", disabled=self.look.watching
+        )
+        self._listen(handle, lambda shown: self._host.change({name: presets[shown]} if shown in presets else {}))
+        return [Preset(name, handle, worded(params, name), words={value: word for word, value in presets.items()})]
 
     def _typed(self, typed: Typed[Any, Any]) -> TypedPlace:
         handle = self.client.gui.add_vector3(

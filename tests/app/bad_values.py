@@ -8,12 +8,17 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from sims import SIMS
-from sims.kit.params import choices, extra, field_bounds
+from sims.kit.params import choices, extra, field_bounds, plain
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
 HOSTILE = '<script>alert("1")</script>\'&'
 NAN, INFINITE = float("nan"), float("inf")
+
+
+def may_be_empty(field: FieldInfo) -> bool:
+    """Whether it is a list that need not have an entry."""
+    return extra(field).get("least") == 0
 
 
 def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
@@ -30,6 +35,13 @@ def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
     elif extra(field).get("control") == "switch":
         yield "a word", "perhaps"
         yield "a number", 2
+    elif may_be_empty(field):
+        low, high = field_bounds(field)
+        yield "a number", 1
+        yield "too many", [high] * (extra(field)["most"] + 1)
+        yield "below", [low - 1]
+        yield "not a number", [NAN]
+        yield "words", ["a"]
     elif isinstance(field.default, tuple):
         low, high = field_bounds(field)
         good = list(field.default)
@@ -55,7 +67,8 @@ def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
 
 def for_link(field: FieldInfo) -> Iterator[tuple[str, str]]:
     """What is wrong, and how it is spelled."""
-    yield "empty", ""
+    if not may_be_empty(field):
+        yield "empty", ""
     yield "markup", HOSTILE
     yield "too long", "1" * 401
     yield "control characters", "1\x00\n2"
@@ -63,6 +76,11 @@ def for_link(field: FieldInfo) -> Iterator[tuple[str, str]]:
         yield "an unknown word", "sideways"
     elif extra(field).get("control") == "switch":
         yield "a word", "yes"
+    elif may_be_empty(field):
+        low, high = field_bounds(field)
+        yield "too many", ",".join([plain(high)] * (extra(field)["most"] + 1))
+        yield "above", plain(high + 1)
+        yield "infinite", "inf"
     elif isinstance(field.default, tuple):
         low, high = field_bounds(field)
         rest = ["0"] * (len(field.default) - 1)

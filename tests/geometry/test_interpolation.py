@@ -244,3 +244,29 @@ def test_speed_needs_growing_moments(t: list[float]) -> None:
         ip.angular_speed(np.ones((3, 4)), t)
     with pytest.raises(GeometryError, match="t is"):
         ip.angular_speed(np.ones((1, 4)), [0.0])
+
+
+@given(pairs(), st.booleans(), progress)
+def test_turn_between_is_the_turn_of_both_arcs(pair: tuple[Array, Array], long_way: bool, t: float) -> None:
+    axis, angle = ip.turn_between(*pair, long_way=long_way)
+    start = quaternion.normalize(pair[0])
+    for way, turned in ((ip.slerp, t * angle), (ip.nlerp, ip.nlerp_angle(float(angle), t))):
+        expected = quaternion.multiply(quaternion.from_axis_angle(axis, float(turned)), start)
+        np.testing.assert_allclose(way(*pair, t, long_way=long_way), expected, rtol=0, atol=EXACT)
+
+
+@given(pairs(), st.booleans())
+def test_turned_by_gives_many_moments_of_slerp(pair: tuple[Array, Array], long_way: bool) -> None:
+    t = np.linspace(0.0, 1.0, 7)
+    axis, angle = ip.turn_between(*pair, long_way=long_way)
+    expected = ip.slerp(*pair, t, long_way=long_way)
+    np.testing.assert_allclose(ip.turned_by(pair[0], axis, t * angle), expected, rtol=0, atol=EXACT)
+
+
+def test_turned_by_refuses_what_has_no_direction() -> None:
+    with pytest.raises(GeometryError, match="axis"):
+        ip.turned_by([1, 0, 0, 0], [0, 0, 0], [0.1])
+    with pytest.raises(GeometryError, match="q is"):
+        ip.turned_by([0, 0, 0, 0], [0, 0, 1], [0.1])
+    with pytest.raises(GeometryError, match="angles"):
+        ip.turned_by([1, 0, 0, 0], [0, 0, 1], [math.inf])

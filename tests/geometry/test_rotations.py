@@ -17,6 +17,7 @@ from geometry.rotations import (
     is_rotation,
     matrix_to_axis_angle,
     nearest_rotation,
+    orbit,
     rotation_angle,
     skew,
     unit,
@@ -200,3 +201,20 @@ def test_a_batch_is_the_same_as_one_by_one(axis: Array, angle: float) -> None:
     batch = axis_angle_to_matrix(np.stack([axis, -axis]), np.array([angle, 1.0]))
     np.testing.assert_allclose(batch[0], axis_angle_to_matrix(axis, angle), rtol=0, atol=EXACT)
     np.testing.assert_allclose(batch[1], axis_angle_to_matrix(-axis, 1.0), rtol=0, atol=EXACT)
+
+
+@given(units(), vectors(3), st.lists(angles, min_size=1, max_size=5))
+def test_orbit_is_where_rotations_lead(axis: Array, point: Array, turns: list[float]) -> None:
+    expected = [axis_angle_to_matrix(axis, turn) @ point for turn in turns]
+    scale = 1.0 + float(np.abs(point).max())
+    np.testing.assert_allclose(orbit(axis, point, turns), expected, rtol=0, atol=4 * EXACT * scale)
+
+
+def test_orbit_refuses_a_zero_axis_and_what_is_not_finite() -> None:
+    for axis, point, turns, wrong in (
+        ([0, 0, 0], [1, 0, 0], [0.1], "axis"),
+        ([0, 0, 1], [math.nan, 0, 0], [0.1], "point"),
+        ([0, 0, 1], [1, 0, 0], [math.inf], "angles"),
+    ):
+        with pytest.raises(GeometryError, match=wrong):
+            orbit(axis, point, turns)

@@ -75,6 +75,19 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
             "show_frustum": False,
         },
     ),
+    "quaternion": (
+        "axis=1,1,0&angle=120&start=0.5,0.5,0.5,0.5&t=0.25&interpolation=nlerp&long_way=1&show_euler=1&point=0,1,0.5",
+        {
+            "axis": [1.0, 1.0, 0.0],
+            "angle": 120.0,
+            "start": [0.5, 0.5, 0.5, 0.5],
+            "t": 0.25,
+            "interpolation": "nlerp",
+            "long_way": True,
+            "show_euler": True,
+            "point": [0.0, 1.0, 0.5],
+        },
+    ),
     "transform-chain": (
         "show=composed&angles=30,40,-30.5,90&lengths=1,0.8,0.5,0&axes=zyyx&swap=2",
         {

@@ -251,3 +251,14 @@ def full_and_pickable() -> Picture:
     picture = full_picture()
     picture.pickable("pick", "Picture")
     return picture
+
+
+def test_a_picture_begins_with_what_is_under_it_and_leaves_that_alone() -> None:
+    below = Picture("p", "P")
+    below.curve([(1, 2), (3, 4), (5, 6.25)], "ghost")
+    alone = below.pane().svg
+    above = Picture("p", "P", under=below)
+    above.dot((7, 8), "x")
+    assert 'd="M1.0 2.0L3.0 4.0L5.0 6.2"' in above.pane().svg
+    assert "<circle" in above.pane().svg
+    assert below.pane().svg == alone

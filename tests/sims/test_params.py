@@ -396,3 +396,29 @@ def test_text_in_another_format_is_refused_with_the_format_in_words(wrong: str) 
     assert caught.value.complaints == [("to", wrong, "street:number")]
     with pytest.raises(ValidationError):
         Route().changed({"to": wrong})
+
+
+class Turns(Params):
+    """A list that may be empty."""
+
+    made: tuple[float, ...] = kit.numbers(
+        (), -180, 180, least=0, most=3, title="Made", description="Turns so far", step=1, control="none"
+    )
+
+
+@given(st.lists(st.floats(-180, 180), max_size=3))
+def test_a_list_that_may_be_empty_comes_back_from_its_link(made: list[float]) -> None:
+    turns = Turns(made=tuple(made))
+    assert Turns.from_query(parse_qsl(turns.query())) == turns
+    assert Turns.model_validate_json(turns.model_dump_json()) == turns
+    assert Turns.from_query([("made", "")]) == Turns()
+
+
+@pytest.mark.parametrize("text", ["1,2,3,4", "181", "a", "1,,2", "nan"])
+def test_a_list_that_may_be_empty_says_what_it_allows(text: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        Turns.from_query([("made", text)])
+    ((name, _, allowed),) = caught.value.complaints
+    assert name == "made"
+    assert "from -180 to 180" in allowed
+    assert text == "181" or allowed == "0 to 3 numbers from -180 to 180, separated by commas"

@@ -1,0 +1,60 @@
+"""quaternion: a turn about an axis as four numbers, how turns compose, and ways between two orientations.
+
+An aircraft (nose +X, left wing +Y, top +Z) stands at a start and is turned by an angle about an axis: its target
+is q ⊗ start. Between the two it goes by SLERP, NLERP or Euler angles.
+"""
+
+from __future__ import annotations
+
+from sims.kit.sim import Action, Objective, Sim
+from sims.quaternion import moves
+from sims.quaternion.ball import VIEW, panes
+from sims.quaternion.model import QuaternionParams, QuaternionSolution, solve
+from sims.quaternion.scene import QuaternionScene
+from sims.quaternion.words import describe, readouts
+
+__all__ = ["SIM", "QuaternionParams", "QuaternionSolution", "solve"]
+
+HALF = 0.5**0.5
+
+SIM = Sim(
+    slug="quaternion",
+    title="Quaternions",
+    summary="Turn an aircraft about any axis, read the quaternion that does it, compose turns, and move smoothly.",
+    concepts=("Quaternion", "Quaternion Rotation", "SLERP"),
+    objectives=(
+        Objective("Write the quaternion of a turn from its axis and half its angle, and read them back", "Apply"),
+        Objective("Explain why q and −q turn the same, and what the long way is", "Understand"),
+        Objective("Compose turns as products, and predict that their order matters", "Apply"),
+        Objective("Compare SLERP, NLERP and Euler angles by their path and their speed", "Analyze"),
+    ),
+    params=QuaternionParams,
+    solve=solve,
+    scene=QuaternionScene,
+    readouts=readouts,
+    describe=describe,
+    view=VIEW,
+    panes=panes,
+    actions=(
+        Action("apply", "Apply rotation", "Go to the target, which becomes the start of the next turn", moves.apply),
+        Action("compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", moves.compose),
+        Action("undo", "Undo last turn", "Take back the last turn made", moves.undo),
+        Action("play", "Play interpolation", "Go from start to target, t from 0 to 1", moves.play),
+    ),
+    handles={"/tip": moves.hold_tip, "/point": moves.hold_point},
+    states={
+        "no turn": {"angle": 0},
+        "half turn": {"axis": (1, 1, 0), "angle": 180},
+        "whole turn": {"axis": (1, 1, 1), "angle": 360, "t": 0.5},
+        "minus q": {"axis": (0, 0, -1), "angle": 300},
+        "long way": {"axis": (1, 1, 1), "angle": 100, "long_way": True, "t": 0.4},
+        "long way of no turn": {"angle": 0, "long_way": True, "t": 0.25},
+        "long way of a half turn": {"angle": 180, "long_way": True, "interpolation": "nlerp", "t": 0.3},
+        "axis along the nose": {"axis": (1, 0, 0), "point": (2, 0, 0)},
+        "gimbal lock": {"axis": (0, 1, 0), "show_euler": True, "interpolation": "euler", "t": 0.6},
+        "composed": {
+            "start": (HALF, 0, 0, HALF), "history": (0, 0, 1, 90), "axis": (1, 0, 0), "show_euler": True, "t": 0.5,
+        },
+        "euler path": {"axis": (1, 1, 0), "angle": 150, "interpolation": "euler", "t": 0.5, "show_euler": True},
+    },
+)  # fmt: skip
