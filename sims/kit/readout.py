@@ -101,7 +101,7 @@ class Table:
 
     def html(self) -> str:
         head, *body = self.rows
-        top = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in head)
+        top = "".join(f'<th scope="col">{escape(cell)}</th>' if cell else "<td></td>" for cell in head)
         rest = "".join([self._row(k, cells) for k, cells in enumerate(body)])
         return f'<table class="s3-table"><caption>{escape(self.note)}</caption><tr>{top}</tr>{rest}</table>'
 
