@@ -234,6 +234,11 @@ class Learner:
         if key:
             keyboard.up(key)
 
+    def says(self, words: str) -> None:
+        """Wait until the panel, the pictures or a notice say it."""
+        places = self.frame.locator(":is(.s3-readouts, .s3-panes, .s3-notice)")
+        places.get_by_text(words).first.wait_for()
+
     def press_keys(self, name: str, *keys: str) -> None:
         """Keys on a slider's thumb."""
         thumb = self.control("slider", name)
@@ -244,7 +249,12 @@ class Learner:
         """Type into the number box of a control (of a vector's boxes, the one counted from 1), and press Enter."""
         which = f", {box} of {len(self.params[name])}" if box else ""
         field = self.frame.get_by_role("textbox", name=self.label(name) + which, exact=True)
-        field.fill(text)
+
+        def typed() -> None:
+            field.fill(text)
+            assert field.input_value() == text
+
+        self.until(typed)  # the page may be drawing the box anew at this moment
         field.press("Enter")
 
     def choose(self, name: str, word: str | None) -> None:

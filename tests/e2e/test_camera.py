@@ -55,7 +55,7 @@ def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: C
     assert flat["P"][2] == [0, 0, 0, 1]
     learner.type("tilt", "90")
     agree(learner, tilt=90)
-    learner.frame.get_by_text("No picture: its scale comes from").wait_for()
+    learner.says("No picture: its scale comes from")
     learner.press("Reset")
     agree(learner, fx=600, fy=300, tilt=0, projection="perspective")
     learner.press_keys("tilt", "ArrowLeft", "ArrowLeft")

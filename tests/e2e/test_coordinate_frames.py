@@ -72,7 +72,7 @@ def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
 
     learner.choose("to", "camera")
     assert agree(learner, to="camera")["determinant"] == -1
-    learner.frame.get_by_text("improper (a reflection)").wait_for()
+    learner.says("improper (a reflection)")
     learner.choose("handedness", None)
     assert agree(learner, handedness=None, point=[-0.6, -1, 0.8])["determinant"] == 1
     assert "handedness" not in learner.address
@@ -132,13 +132,13 @@ def test_w_goes_to_zero(classroom: Classroom) -> None:
     np.testing.assert_allclose(agree(learner, w=0.5)["point_world"], [0, -2, 0], atol=1e-12)
     learner.type("w", "0.1")
     assert agree(learner, w=0.1)["distance"] == 10
-    learner.frame.get_by_text("Out of view: the point is 10.0").wait_for()
+    learner.says("Out of view: the point is 10.0")
     learner.press_keys("w", "Home")
     solution = agree(learner, w=0)
     assert solution["cartesian"] is None
     np.testing.assert_allclose(solution["direction"], [0, -1, 0], atol=1e-12)
-    learner.frame.get_by_text("w = 0: no point, but a direction").wait_for()
+    learner.says("w = 0: no point, but a direction")
     learner.until(lambda: "direction (0.00, 0.00, 1.00)" in learner.spoken())
     learner.type("point", "0", box=3)
-    learner.frame.get_by_text("neither a point nor a direction").first.wait_for()
+    learner.says("neither a point nor a direction")
     assert not learner.scene.visible("/point")

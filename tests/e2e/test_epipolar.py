@@ -124,7 +124,7 @@ def test_presets_and_controls_answer(classroom: Classroom) -> None:
     learner.control("checkbox", "show_plane").click()
     agree(learner, show_plane=False)
     learner.until(lambda: not learner.scene.visible("/plane"))
-    learner.frame.get_by_text("To estimate F takes 8 points").wait_for()
+    learner.says("To estimate F takes 8 points")
     learner.press("Estimate F, new noise")
     noisy = agree(learner, points=12, noise=1, seed=0)
     learner.press("Estimate F, new noise")
@@ -142,7 +142,7 @@ def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classr
     assert solution["F"] is None
     assert solution["pixel_left"] is not None
     assert any("no baseline" in text for text in learner.scene.labels().values())
-    learner.frame.get_by_text("without a baseline there is no epipolar plane").wait_for()
+    learner.says("without a baseline there is no epipolar plane")
     learner.until(lambda: "no F" in learner.spoken())
     boxes.nth(0).fill("0.5")
     boxes.nth(0).press("Enter")

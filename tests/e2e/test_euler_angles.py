@@ -120,7 +120,7 @@ def test_gimbal_lock_is_said_and_shown(classroom: Classroom) -> None:
     R = agree(learner, pitch=90)
     np.testing.assert_allclose(R[2], [-1, 0, 0], atol=1e-12)
     assert learner.solved()["locked"]
-    learner.frame.get_by_text("Gimbal lock: the first and third axes coincide").wait_for()
+    learner.says("Gimbal lock: the first and third axes coincide")
     learner.until(lambda: "at gimbal lock" in learner.spoken())
     shown_at_tips(learner, "z")
 

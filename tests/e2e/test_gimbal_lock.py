@@ -70,7 +70,7 @@ def test_lock_is_shown_said_and_left(classroom: Classroom) -> None:
     learner = classroom.open("gimbal-lock/embed?yaw=30&roll=10")
     learner.type("pitch", "80")
     agree(learner, pitch=80)
-    learner.frame.get_by_text("Near gimbal lock").wait_for()
+    learner.says("Near gimbal lock")
     assert learner.scene.visible("/reach/weak")
     learner.press("Go to gimbal lock")
     solution = agree(learner, pitch=90)
@@ -79,7 +79,7 @@ def test_lock_is_shown_said_and_left(classroom: Classroom) -> None:
     assert "⚠ no ring turns about this" in learner.scene.labels().values()
     outer, _, inner = axes(learner)
     np.testing.assert_allclose(inner, -outer, rtol=0, atol=1e-6)
-    learner.frame.get_by_text("Gimbal lock: outer and inner ring turn about one line").wait_for()
+    learner.says("Gimbal lock: outer and inner ring turn about one line")
     learner.until(lambda: "gimbal lock, 2 degrees of freedom" in learner.spoken())
     assert learner.reads("ψ−φ", 20.0, 1)
     learner.press("Reset")
@@ -102,7 +102,7 @@ def test_the_same_motion_plays_and_the_aircraft_returns(classroom: Classroom) ->
     agree(learner, yaw=40, pitch=90, roll=40, show_ghost=True, ghost=[0, 90, 0])
     np.testing.assert_allclose(learner.scene.world_pose(INNER)[:3, :3], start, rtol=0, atol=1e-9)
     assert max(gaps) > 30.0, "it was turned away before"
-    learner.frame.get_by_text("Same orientation as the ghost, which has other ring angles").wait_for()
+    learner.says("Same orientation as the ghost, which has other ring angles")
 
 
 def test_trying_the_lost_axis_steps_under_reduced_motion_and_stops_at_a_touch(classroom: Classroom) -> None:
@@ -110,7 +110,7 @@ def test_trying_the_lost_axis_steps_under_reduced_motion_and_stops_at_a_touch(cl
     learner.press("Try to turn about the lost axis")
     learner.until(lambda: learner.params["ghost"] == [90, 60, 90])
     assert (learner.params["yaw"], learner.params["pitch"], learner.params["roll"]) == (0, 90, 0), "no ring moves"
-    learner.frame.get_by_text("No ring rates turn the aircraft towards it").wait_for()
+    learner.says("No ring rates turn the aircraft towards it")
     learner.sees(yaw=90, pitch=90, roll=90)
     learner.sees(yaw=90, pitch=60, roll=90, show_reach=True)
     told = [message["params"]["ghost"][1] for message in learner.sockets.told]

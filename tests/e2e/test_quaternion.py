@@ -118,11 +118,11 @@ def test_turns_are_composed_and_undone(classroom: Classroom) -> None:
 def test_a_zero_axis_is_refused_and_the_picture_stays(classroom: Classroom) -> None:
     learner = classroom.open("quaternion/embed?axis=0,0,2&angle=60")
     solution = agree(learner, axis=[0, 0, 2])
-    learner.frame.get_by_text("has length 2.00").wait_for()
+    learner.says("has length 2.00")
     third = learner.frame.get_by_role("textbox", name="Axis n, 3 of 3", exact=True)
     third.fill("0")
     third.press("Enter")
-    learner.frame.get_by_text("axis is").wait_for()
+    learner.says("axis is")
     assert agree(learner, axis=[0, 0, 2]) == solution
     learner.until(lambda: third.input_value() == "2")
 

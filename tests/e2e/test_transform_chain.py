@@ -115,7 +115,7 @@ def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) 
     field.fill("0")
     field.press("Enter")
     agree(learner, angles=[30, 0])
-    learner.frame.get_by_text("Singular pose: the joints can move").wait_for()
+    learner.says("Singular pose: the joints can move")
     learner.until(lambda: "singular pose" in learner.spoken())
     learner.press("Reset")
     agree(learner, angles=[10, 20, 30], axes="zyy", swap=2)
@@ -136,7 +136,7 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     boxes.nth(2).press("Enter")
     learner.until(lambda: learner.params["pull"] is not None)
     assert agree(learner)["pull_outside"]
-    learner.frame.get_by_text("Out of reach: this is as near").wait_for()
+    learner.says("Out of reach: this is as near")
     assert any("out of reach" in text for text in learner.scene.labels().values())
 
 

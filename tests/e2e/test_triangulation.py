@@ -201,7 +201,7 @@ def test_parallel_rays_are_said_where_they_happen(classroom: Classroom) -> None:
     solution = agree(learner, left_uv=[410, 210], right_uv=[410, 210])
     assert solution["point"] is None
     assert any("parallel rays" in text for text in learner.scene.labels().values())
-    learner.frame.get_by_text("Parallel rays: no finite point").wait_for()
+    learner.says("Parallel rays: no finite point")
     learner.until(lambda: "arallel rays" in learner.spoken())
     learner.frame.locator("[data-handle=right_uv]").press("ArrowLeft")
     assert agree(learner, right_uv=[409, 210])["point"] is not None
