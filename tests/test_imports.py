@@ -19,7 +19,7 @@ FORBIDDEN = {
     "sims": {"app", "tests", "benchmarks", "fastapi", "starlette", "uvicorn"},
     "app": {"tests", "benchmarks"},
 }
-GEOMETRY_ALLOWED = {"geometry", "numpy", *sys.stdlib_module_names}
+GEOMETRY_ALLOWED = {"geometry", "numpy", "scipy", *sys.stdlib_module_names}
 INPUT_OUTPUT = {"asyncio", "http", "io", "os", "pathlib", "shutil", "socket", "subprocess", "urllib"}
 
 MAY_USE_PRIVATE_NAMES = {
@@ -103,10 +103,12 @@ def uses_viser_internals(module: str) -> bool:
 
 
 @pytest.mark.parametrize("path", sources("geometry"), ids=name_of)
-def test_geometry_imports_only_numpy_and_the_standard_library(path: Path) -> None:
+def test_geometry_imports_only_numpy_scipy_and_the_standard_library(path: Path) -> None:
     tops = {(line, module.split(".")[0]) for line, module in imports_of(path)}
     wrong = [(line, top) for line, top in tops if top not in GEOMETRY_ALLOWED - INPUT_OUTPUT]
-    assert not wrong, f"{name_of(path)} may import NumPy and the standard library without input or output: {wrong}"
+    assert not wrong, (
+        f"{name_of(path)} may import NumPy, SciPy and the standard library without input or output: {wrong}"
+    )
 
 
 @pytest.mark.parametrize("path", sources(*FORBIDDEN), ids=name_of)

@@ -1,0 +1,116 @@
+"""The rigid motion that brings points onto points, or onto planes, in one step."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, norm
+from ..errors import GeometryError
+
+WEAK = 1e-3
+"""Share of the best direction's information, below which the data hardly say anything about one."""
+
+
+_LINE = 1e-9
+"""Ratio of the points' extents, below which they are on a line."""
+
+
+@dataclass(frozen=True, eq=False)
+class Observability:
+    """How well pairs of points fix each of six directions of motion.
+
+    `information` (6,), rising, is the mean square change of the residuals, in m², for a motion of one metre: of
+    all points, or of a typical one by a turn. `directions` (6, 6), by rows: rotation vector in radians times
+    `lever`, the points' root mean square distance from `center` (3,), then translation in metres.
+    """
+
+    information: Array
+    directions: Array
+    center: Array
+    lever: float
+
+    def unobservable(self, share: float = WEAK) -> Array:
+        """Return the directions (n, 6) that have less than a share of the most information."""
+        return np.asarray(self.directions[self.information <= share * self.information[-1]])
+
+
+def onto_points(p: Array, q: Array) -> Array:
+    """Return the transform T (4, 4) with least Σ‖T pᵢ − qᵢ‖², for points p and q (N, 3).
+
+    Of all that do so for points on a line, or in one place, the one that turns least.
+    Raises GeometryError without points. Source: Kabsch 1976; Umeyama 1991, eq. 40–42, without scale.
+    """
+    if not len(p):
+        raise GeometryError("p", "no points", "at least one")
+    p_mean, q_mean = p.mean(axis=0), q.mean(axis=0)
+    H = (q - q_mean).T @ (p - p_mean)
+    U, values, Vt = np.linalg.svd(H)
+    if values[1] <= _LINE * values[0]:
+        U, _, Vt = np.linalg.svd(H + (_LINE * values[0] or 1.0) * np.eye(3))
+    U[:, 2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))
+    R = U @ Vt
+    return _pose(R, q_mean - R @ p_mean)
+
+
+def onto_planes(p: Array, q: Array, normals: Array) -> Array:
+    """Return T (4, 4), one Gauss–Newton step towards least Σ(nᵢ·(T pᵢ − qᵢ))², for points and normals (N, 3).
+
+    It doesn't move along directions that the planes say nothing about.
+    Raises GeometryError without points. Source: Chen and Medioni 1992; Low 2004, "Linear least-squares ICP".
+    """
+    if not len(p):
+        raise GeometryError("p", "no points", "at least one")
+    center, lever, J = _jacobian(p, normals)
+    values, vectors = np.linalg.eigh(J.T @ J)
+    kept = values > 1e-10 * values[-1]
+    gradient = vectors[:, kept].T @ (J.T @ np.vecdot(normals, q - p))
+    turn_and_move = vectors[:, kept] @ (gradient / values[kept])
+    R = _turn(turn_and_move[:3] / lever)
+    return _pose(R, center + turn_and_move[3:] - R @ center)
+
+
+def observability(p: Array, normals: Array | None = None) -> Observability:
+    """Return what pairs at points p (N, 3) say about a motion: of points, or of planes with the normals (N, 3).
+
+    Raises GeometryError without points. Source: Gelfand et al. 2003, "Geometrically stable sampling", sec. 3.
+    """
+    if not len(p):
+        raise GeometryError("p", "no points", "at least one")
+    if normals is not None:
+        center, lever, J = _jacobian(p, normals)
+        information = J.T @ J / len(p)
+    else:
+        center, lever = _centre(p)
+        r = (p - center) / lever
+        inertia = np.vecdot(r, r).mean() * np.eye(3) - r.T @ r / len(p)
+        information = np.block([[inertia, np.zeros((3, 3))], [np.zeros((3, 3)), np.eye(3)]])
+    values, vectors = np.linalg.eigh(information)
+    return Observability(np.maximum(values, 0.0), vectors.T, center, lever)
+
+
+def _jacobian(p: Array, normals: Array) -> tuple[Array, float, Array]:
+    center, lever = _centre(p)
+    return center, lever, np.concatenate([np.cross((p - center) / lever, normals), normals], axis=1)
+
+
+def _centre(p: Array) -> tuple[Array, float]:
+    center = p.mean(axis=0)
+    offset = p - center
+    return center, math.sqrt(float(np.vecdot(offset, offset).mean())) or 1.0
+
+
+def _turn(vector: Array) -> Array:
+    """Rotation by a rotation vector (3,). Source: Rodrigues' formula."""
+    angle = float(norm(vector))
+    x, y, z = vector.tolist()
+    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    half = math.sin(angle / 2.0) / (angle / 2.0) if angle > 0.0 else 1.0
+    sine = math.sin(angle) / angle if angle > 0.0 else 1.0
+    return np.asarray(np.eye(3) + sine * S + 0.5 * half * half * (S @ S))
+
+
+def _pose(R: Array, t: Array) -> Array:
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T

@@ -1,0 +1,79 @@
+"""Surface normals by principal components of each point's nearest neighbours."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..arrays import Array, Mask
+from ..errors import as_finite_array, as_number
+from .eigen import least_eigenvectors
+from .neighbours import Neighbours
+from .points import Indices, Progress, in_chunks, silent
+
+
+@dataclass(frozen=True, eq=False)
+class Normals:
+    """Unit normals (N, 3) of a cloud, and how flat it is round each point.
+
+    `eigenvalues` (N, 3), rising, are variances in m² of the neighbours along their principal directions, the first
+    one along the normal. Where the neighbours are on a line, or in one place, there is no normal: NaN, and False
+    in `defined` (N,).
+    """
+
+    normals: Array
+    eigenvalues: Array
+    defined: Mask
+
+    @property
+    def variation(self) -> Array:
+        """Surface variation (N,): 0 on a plane, at most 1/3. Source: Pauly, Gross and Kobbelt 2002, eq. 3."""
+        total = self.eigenvalues.sum(axis=1)
+        return np.asarray(self.eigenvalues[:, 0] / np.where(total > 0.0, total, 1.0))
+
+
+def normals(
+    points: npt.ArrayLike | Neighbours,
+    neighbors: int = 16,
+    *,
+    sensor: npt.ArrayLike | None = None,
+    progress: Progress = silent,
+) -> Normals:
+    """Estimate the normals of points (N, 3) from their nearest neighbours, themselves included.
+
+    They point to the sensor, one position (3,) or one for each point (N, 3); without one they point up.
+    Raises GeometryError if a point isn't finite or there are to be fewer than three neighbours.
+    Source: Hoppe et al. 1992, sec. 3.2.
+    """
+    near = points if isinstance(points, Neighbours) else Neighbours(points)
+    count = min(int(as_number("neighbors", neighbors, least=3)), len(near))
+    vectors, values, defined = np.empty((len(near), 3)), np.empty((len(near), 3)), np.empty(len(near), bool)
+
+    def work(rows: slice) -> None:
+        _, places = near.nearest(rows, count)
+        values[rows], vectors[rows], defined[rows] = least_eigenvectors(_covariances(near, rows, places))
+
+    in_chunks(work, len(near), progress)
+    found = Normals(near.unordered(vectors), near.unordered(values), near.unordered(defined))
+    orient(found.normals, near.unordered(near.ordered), sensor)
+    return found
+
+
+def orient(vectors: Array, points: Array, sensor: npt.ArrayLike | None = None) -> None:
+    """Turn normals (N, 3), in place, towards the sensor that saw the points; up without one."""
+    if sensor is None:
+        away = vectors[:, 2] < 0.0
+    else:
+        to_sensor = as_finite_array("sensor", sensor, 3) - points
+        away = np.vecdot(vectors, to_sensor) < 0.0
+    np.negative(vectors, out=vectors, where=away[:, None])
+
+
+def _covariances(near: Neighbours, rows: slice, places: Indices) -> list[Array]:
+    """The six entries of each neighbourhood's covariance, from coordinates relative to its own point."""
+    scale = 1.0 / places.shape[1]
+    offsets = [row[places] - row[rows, None] for row in near.xyz]
+    for offset in offsets:
+        offset -= scale * offset.sum(axis=1, keepdims=True)
+    pairs = (0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)
+    return [scale * np.einsum("nk,nk->n", offsets[i], offsets[j]) for i, j in pairs]
