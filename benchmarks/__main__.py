@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks import opening
+from benchmarks import clouds, opening
 from benchmarks.process import CORES, resident
 from benchmarks.servers import Plain, Sim3
 
@@ -30,12 +30,12 @@ Rows = list[dict[str, Any]]
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer learners and seconds, less certain numbers")
-    parser.add_argument("--only", choices=("learners", "sessions", "opening"), help="one part")
+    parser.add_argument("--only", choices=("learners", "sessions", "opening", "clouds"), help="one part")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers there too")
     args = parser.parse_args()
     if len(CORES) < 2:
         raise SystemExit("The benchmark needs Linux and two cores: one for the server, one for the load.")
-    parts = {"learners": learners, "sessions": sessions, "opening": openings}
+    parts = {"learners": learners, "sessions": sessions, "opening": openings, "clouds": clouds.measure}
     print(f"{len(CORES)} cores, load average {os.getloadavg()[0]:.1f} before the start")
     results = {name: part(args.quick) for name, part in parts.items() if args.only in (None, name)}
     if args.json:

@@ -12,11 +12,12 @@ from .outliers import Outliers, outliers
 from .picking import Pick, pick
 from .planes import Plane, fit_plane, ransac_plane
 from .points import Indices, Progress, bounds
-from .registration import Registration, Step, Target, icp, register
+from .registration import SETTLED, Registration, Step, Target, icp, register
 from .surface import Surface, alpha_shape, mesh_area, mesh_volume
 from .voxels import Voxels, voxels
 
 __all__ = [
+    "SETTLED",
     "Clusters",
     "Indices",
     "Neighbours",

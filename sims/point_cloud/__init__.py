@@ -1,0 +1,1 @@
+"""point-cloud: clouds of points, their attributes, and the operations everybody uses on them."""

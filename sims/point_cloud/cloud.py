@@ -1,0 +1,44 @@
+"""A point cloud as the sim holds it, whether it was simulated or came from a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.arrays import Array
+
+Colors = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Points (N, 3) in metres, and what is known of each: None if nothing is.
+
+    `colors` (N, 3) are RGB 0–255, `intensity` (N,) is 0–1, `ring` (N,) the laser of a rotating lidar, `scan` (N,)
+    the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from. `dropped` points of the
+    file had no finite coordinates. `truth` (4, 4) brings scan 1 onto scan 0, where that is known.
+    """
+
+    name: str
+    points: Array
+    colors: Colors | None = None
+    intensity: Array | None = None
+    ring: npt.NDArray[np.uint8] | None = None
+    scan: npt.NDArray[np.uint8] | None = None
+    sensor: Array | None = None
+    dropped: int = 0
+    truth: Array | None = None
+    simulated: bool = False
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def only(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> Cloud:
+        """The same cloud with some of its points."""
+        each: dict[str, Any] = {name: getattr(self, name) for name in ("points", "colors", "intensity", "ring", "scan")}
+        kept: dict[str, Any] = {name: None if values is None else values[rows] for name, values in each.items()}
+        sensor = self.sensor if self.sensor is None or self.sensor.ndim == 1 else self.sensor[rows]
+        return replace(self, **kept, sensor=sensor)
