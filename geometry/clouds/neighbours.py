@@ -74,6 +74,6 @@ def spatial_order(cloud: Array) -> Indices:
     size = float((high - low).max()) / max(1.0, np.sqrt(len(cloud) / _PER_CELL))
     if not size > 0.0:
         return np.arange(len(cloud))
-    keys, cells = cell_keys(columns(cloud) - low[:, None], size)
+    keys, cells = cell_keys(columns(cloud - low), size, low - low, high - low)
     bits = len(keys).bit_length()
     return sort_keys(keys, bits) if cells < 2 ** (63 - bits) else np.argsort(keys, kind="stable")

@@ -1,13 +1,15 @@
 """Voxel grid: one point for each cell that has any, the mean of those in it."""
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array
-from ..errors import GeometryError, as_finite_array, as_number
-from .points import Indices, as_cloud, columns, extent
+from ..errors import GeometryError, as_array, as_finite_array, as_number
+from .points import Indices, as_cloud, columns, extent, in_chunks
 
 _DENSE = 16
 """Cells of the whole grid, per point, up to which a table of all cells is quicker than sorting."""
@@ -19,15 +21,21 @@ _MOST = 2.0**52
 class Voxels:
     """A cloud on a grid of cubic cells of edge `size`: M cells have points.
 
-    `points` (M, 3) are the means, in the order of the cells (x, then y, then z), `counts` (M,) says of how many,
-    `labels` (N,) in which cell each point is. `origin` (3,) is a corner of the grid.
+    `points` (M, 3) are the means, in the order of the cells (x, then y, then z), `counts` (M,) says of how many
+    points. `origin` (3,) is a corner of the grid.
     """
 
     points: Array
     counts: Indices
-    labels: Indices
     size: float
     origin: Array
+    _keys: Indices
+    _number: Indices | None = None
+
+    @cached_property
+    def labels(self) -> Indices:
+        """Number (N,) of each point's cell: made when it is asked for."""
+        return self._keys if self._number is None else self._number[self._keys]
 
     def mean(self, values: npt.ArrayLike) -> Array:
         """Return the means (M, ...) in each cell of what belongs to the points, (N, ...): colours, intensities."""
@@ -35,7 +43,7 @@ class Voxels:
         if array.shape[:1] != self.labels.shape:
             raise GeometryError("values", f"an array of shape {array.shape}", f"{len(self.labels)} rows")
         flat = columns(array.reshape(len(array), int(np.prod(array.shape[1:]))))
-        means = _means(self.labels, self.counts, flat)
+        means = _means(self.labels, self.counts, slice(None), flat)
         return means.reshape(len(self.counts), *array.shape[1:])
 
 
@@ -46,72 +54,97 @@ def voxels(points: npt.ArrayLike, size: float, *, origin: npt.ArrayLike | None =
     belongs to the cell above it. No points give no cells.
     Raises GeometryError if the size isn't positive or is too small for float64, or a point isn't finite.
     """
-    cloud, size = as_cloud("points", points), as_number("size", size, above=0.0)
-    if not len(cloud):
-        nothing = np.empty(0, np.intp)
-        return Voxels(np.empty((0, 3)), nothing, nothing, size, np.zeros(3))
+    cloud, size = as_array("points", points, 3), as_number("size", size, above=0.0)
+    if not cloud.size or cloud.ndim != 2:
+        return _no_voxels(as_cloud("points", cloud), size)
     xyz = columns(cloud)
     low, high = extent(xyz)
+    if not np.isfinite([low, high]).all():
+        as_cloud("points", cloud)
     start = low - 0.5 * size if origin is None else as_finite_array("origin", origin, 3)
     if np.abs([low - start, high - start]).max() / size > _MOST:
         raise GeometryError("size", size, "larger, for points so far from the grid's origin")
     xyz -= start[:, None]
-    labels, counts = _labels(xyz, size)
-    return Voxels(_means(labels, counts, xyz) + start, counts, labels, size, start)
+    keys, cells = cell_keys(xyz, size, low - start, high - start)
+    if cells <= _DENSE * len(keys) + 4096:
+        counts = np.bincount(keys, minlength=cells)
+        filled = np.flatnonzero(counts)
+        means = _means(keys, counts, filled, xyz) + start
+        return Voxels(means, counts[filled], size, start, keys, _numbers(filled, cells))
+    labels, counts = _by_sorting(keys, cells)
+    return Voxels(_means(labels, counts, slice(None), xyz) + start, counts, size, start, labels)
 
 
-def _means(labels: Indices, counts: Indices, rows: Array) -> Array:
-    means = np.empty((len(counts), len(rows)))
+def _no_voxels(cloud: Array, size: float) -> Voxels:
+    nothing = np.empty(0, np.intp)
+    return Voxels(cloud, nothing, size, np.zeros(3), nothing)
+
+
+def _means(labels: Indices, counts: Indices, filled: Indices | slice, rows: Array) -> Array:
+    number = counts[filled]
+    means = np.empty((len(number), len(rows)))
     for column, row in enumerate(rows):
-        means[:, column] = np.bincount(labels, weights=row, minlength=len(counts))
-    means /= counts[:, None]
+        sums = np.bincount(labels, weights=row, minlength=len(counts))
+        means[:, column] = sums[filled] / number
     return means
 
 
-def _labels(xyz: Array, size: float) -> tuple[Indices, Indices]:
-    """Number of each point's cell among those that have points, and how many points each of them has."""
-    keys, cells = cell_keys(xyz, size)
-    if cells <= _DENSE * len(keys) + 4096:
-        return _by_table(keys, cells)
-    bits = len(keys).bit_length()
-    if cells < 2 ** (63 - bits):
-        return _by_sorting(keys, bits)
-    _, labels, counts = np.unique(keys, return_inverse=True, return_counts=True)
-    return labels, counts
+def _numbers(filled: Indices, cells: int) -> Indices:
+    """For each cell of the whole grid its place among the filled ones."""
+    number = np.empty(cells, np.intp)
+    number[filled] = np.arange(len(filled))
+    return number
 
 
-def cell_keys(xyz: Array, size: float) -> tuple[Indices, int]:
-    """One number for each point's cell, in the cells' order, and how many numbers there may be."""
+def cell_keys(xyz: Array, size: float, low: Array, high: Array) -> tuple[Indices, int]:
+    """One number for each point's cell, in the cells' order, and how many numbers there may be.
+
+    `low` and `high` (3,) are the least and greatest coordinates of the columns (3, N).
+    """
+    first, last = np.floor(low / size), np.floor(high / size)
+    lengths = [int(length) for length in (last - first + 1.0).tolist()]
+    cells = math.prod(lengths)
+    if cells >= _MOST:
+        return _long_keys(xyz, size)
+    keys = np.empty(xyz.shape[1], np.int64)
+
+    def work(rows: slice) -> None:
+        number = np.floor(xyz[0, rows] / size)  # whole numbers below 2^53: float64 holds them, and is quicker
+        number -= first[0]
+        for axis in (1, 2):
+            number *= lengths[axis]
+            index = np.floor(xyz[axis, rows] / size)
+            index -= first[axis]
+            number += index
+        keys[rows] = number
+
+    in_chunks(work, len(keys), size=32_768)
+    return keys, cells
+
+
+def _long_keys(xyz: Array, size: float) -> tuple[Indices, int]:
+    """The same for grids with more cells than a number has digits: cells that nobody is in aren't counted."""
     keys, cells = np.zeros(xyz.shape[1], np.int64), 1
     for row in xyz:
-        index = np.floor(row / size)
-        index -= index.min()
-        length = int(index.max()) + 1
-        axis = index.astype(np.int64)
+        length, axis = _ranks(np.floor(row / size))
         if cells * length >= 2**62:
             cells, keys = _ranks(keys)
-            length, axis = _ranks(axis)
-        keys *= length
-        keys += axis
+        keys = keys * length + axis
         cells *= length
     return keys, cells
 
 
-def _ranks(values: Indices) -> tuple[int, Indices]:
+def _ranks(values: Indices | Array) -> tuple[int, Indices]:
     different, ranks = np.unique(values, return_inverse=True)
     return len(different), ranks
 
 
-def _by_table(keys: Indices, cells: int) -> tuple[Indices, Indices]:
-    counts = np.bincount(keys, minlength=cells)
-    filled = np.flatnonzero(counts)
-    number = np.empty(cells, np.intp)
-    number[filled] = np.arange(len(filled))
-    return number[keys], counts[filled]
-
-
-def _by_sorting(keys: Indices, bits: int) -> tuple[Indices, Indices]:
-    """Key and index share one integer: sorting integers is far quicker than finding the order of the keys."""
+def _by_sorting(keys: Indices, cells: int) -> tuple[Indices, Indices]:
+    """Number of each point's cell among those that have points, and how many points each of them has."""
+    bits = len(keys).bit_length()
+    if cells >= 2 ** (63 - bits):
+        _, labels, counts = np.unique(keys, return_inverse=True, return_counts=True)
+        return labels, counts
     order = sort_keys(keys, bits)
     ordered = keys[order]
     first = np.empty(len(keys), bool)
@@ -123,7 +156,10 @@ def _by_sorting(keys: Indices, bits: int) -> tuple[Indices, Indices]:
 
 
 def sort_keys(keys: Indices, bits: int) -> Indices:
-    """Order of keys below 2^(63 − bits), of which there are fewer than 2^bits; equal ones in their own order."""
+    """Order of keys below 2^(63 − bits), of which there are fewer than 2^bits; equal ones in their own order.
+
+    Key and index share one integer: sorting integers is far quicker than finding the order of the keys.
+    """
     packed = keys << bits
     packed |= np.arange(len(keys))
     packed.sort()
