@@ -37,6 +37,22 @@ def before_tone_mapping(text: str, *, linear: bool = False) -> RGB:
     return red, green, blue
 
 
+def before_film(shown: npt.ArrayLike) -> npt.NDArray[np.uint8]:
+    """As `before_tone_mapping`, of many colours (N, 3), 0–255, at once: for the points of a cloud."""
+    share = np.asarray(shown) / 255.0
+    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    sent = _before_film(light.T).T
+    for _ in range(60):
+        rows = np.flatnonzero(sent.max(axis=1) > 1.0)
+        if not len(rows):
+            break
+        light[rows] *= 0.98
+        sent[rows] = _before_film(light[rows].T).T
+    sent = np.clip(sent, 0.0, 1.0)
+    sent = np.where(sent <= 0.0031308, 12.92 * sent, 1.055 * sent ** (1 / 2.4) - 0.055)
+    return np.rint(255.0 * sent).astype(np.uint8)
+
+
 def _before_film(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     y = np.clip(np.linalg.solve(_FROM_FILM, light), 0.0, 1.0)
     a, b, c = 1.0 - 0.983729 * y, 0.0245786 - 0.4329510 * y, -0.000090537 - 0.238081 * y

@@ -100,6 +100,8 @@ class Sim(Generic[P, S]):
     describe: Callable[[P, S], str]
     view: View
     actions: Sequence[Action[P]] = ()
+    view_of: Callable[[P], View] | None = None
+    """The first view of a state, where it isn't always `view`."""
     panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
     handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
     typed: Sequence[Typed[P, S]] = ()
@@ -108,10 +110,15 @@ class Sim(Generic[P, S]):
     """Solving can take over 5 ms: it runs in the pool, beside the event loop."""
 
 
+def drawn() -> Any:
+    """A field of a Solution that the scene alone needs, and that is too large to go out."""
+    return field(repr=False, metadata={"drawn": True})
+
+
 def jsonable(value: Any) -> Any:
     """A Solution as JSON: arrays as nested lists by rows; what doesn't exist (NaN, infinite) as null."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: jsonable(getattr(value, f.name)) for f in fields(value)}
+        return {f.name: jsonable(getattr(value, f.name)) for f in fields(value) if not f.metadata.get("drawn")}
     if isinstance(value, np.ndarray):
         return jsonable(value.tolist())
     if isinstance(value, Mapping):

@@ -42,3 +42,15 @@ class Cloud:
         kept: dict[str, Any] = {name: None if values is None else values[rows] for name, values in each.items()}
         sensor = self.sensor if self.sensor is None or self.sensor.ndim == 1 else self.sensor[rows]
         return replace(self, **kept, sensor=sensor)
+
+    def with_means(self, points: Array, colors: Colors | None, intensity: Array | None) -> Cloud:
+        """The same cloud with these in place of each point's."""
+        return replace(self, points=points, colors=colors, intensity=intensity)
+
+    def followed_by(self, other: Cloud) -> Cloud:
+        """Both clouds' points; what only one of them knows is lost."""
+        joined: dict[str, Any] = {}
+        for name in ("points", "colors", "intensity", "ring", "scan", "sensor"):
+            both = getattr(self, name), getattr(other, name)
+            joined[name] = None if any(v is None for v in both) else np.concatenate(both)
+        return replace(self, **joined)

@@ -1,0 +1,160 @@
+"""State and solution: which cloud, how it is thinned and coloured, and which process has been taken how far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, Self
+
+from geometry.arrays import Array
+from sims.kit.params import Params, choice, number, switch
+from sims.kit.sim import Step, drawn
+from sims.point_cloud.processes import Clusters, Ground, Outliers, Registered, Surface
+from sims.point_cloud.shown import Drawn
+
+MOST_POINTS = 10_000_000
+MOST_STEPS = 40
+"""Of ICP."""
+KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
+"""Parameters that leave every shown point its index."""
+WHAT_DISTANCE_IS = {
+    "none": "Distance of the process",
+    "ground": "Half thickness of the ground",
+    "clusters": "Widest gap in a cluster",
+    "outliers": "Distance of the process",
+    "register": "Reach of the pairs",
+    "surface": "Radius of the ball",
+}
+
+
+class CloudParams(Params):
+    dataset: Literal["room", "street", "statue", "two-scans"] = choice(
+        "room", title="Dataset", description="Which cloud. These four were simulated: rays cast at simple bodies",
+        labels={
+            "room": "Room, colour scanner",
+            "street": "Street, rotating lidar",
+            "statue": "Statue, noise and outliers",
+            "two-scans": "Two scans of a court",
+        },
+    )  # fmt: skip
+    color: Literal["height", "intensity", "rgb", "normals"] = choice(
+        "rgb", title="Colour by", description="What the colour of each point says",
+        labels={"height": "Height", "intensity": "Intensity", "rgb": "Measured colour", "normals": "Normals"},
+    )  # fmt: skip
+    point_size: float = number(
+        2.0, 0.5, 10.0, step=0.5, title="Point size", description="About in pixels, as the sim opens"
+    )
+    voxel_size: float = number(
+        0.0, 0.0, 1.0, step=0.005, unit="m", title="Voxel size",
+        description="Edge of the cells; the points in each become their mean. At 0 all points are shown",
+    )  # fmt: skip
+    show_normals: bool = switch(False, title="Normals", description="Short lines along the normals, to the sensor")
+    neighbors: int = number(
+        16, 5, 50, step=1, title="Neighbours k",
+        description="How many nearest points, itself included, a normal and an outlier are judged by",
+    )  # fmt: skip
+    show_box: bool = switch(True, title="Bounding box", description="The box along the axes that all points are in")
+    selected: int | None = number(
+        None, 0, MOST_POINTS - 1, step=1, title="Selected point", control="number",
+        description="Click a point, or type its number; −1 for none",
+    )  # fmt: skip
+    process: Literal["none", "ground", "clusters", "outliers", "register", "surface"] = choice(
+        "none", title="Process", description="What to do with the points that are left after downsampling",
+        labels={
+            "none": "None",
+            "ground": "Ground plane (RANSAC)",
+            "clusters": "Euclidean clusters",
+            "outliers": "Remove outliers",
+            "register": "Register two scans (ICP)",
+            "surface": "Surface (alpha shape)",
+        },
+    )  # fmt: skip
+    step: int = number(
+        2, 0, MOST_STEPS, step=1, title="Step",
+        description="How far the process has come: 0 before, 1 found, 2 done; in a registration, steps of ICP",
+    )  # fmt: skip
+    method: Literal["plane", "point"] = choice(
+        "plane", title="ICP pairs", description="What each point of the second scan is drawn to",
+        labels={"plane": "Point to plane", "point": "Point to point"}, group="Settings of the process",
+    )  # fmt: skip
+    distance: float = number(
+        0.0, 0.0, 2.0, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
+        description="At 0 it follows from how dense the cloud is",
+    )  # fmt: skip
+    deviations: float = number(
+        2.0, 0.5, 4.0, step=0.1, title="Deviations of an outlier", group="Settings of the process",
+        description="Outliers are this many standard deviations farther from their neighbours than is usual",
+    )  # fmt: skip
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        if name == "step" and self.process != "register":
+            return 0, 2
+        return super().bounds(name)
+
+    def label(self, name: str) -> str:
+        return WHAT_DISTANCE_IS[self.process] if name == "distance" else super().label(name)
+
+    def moved(self, changes: Mapping[str, Any]) -> Self:
+        """A process begins at its result, a registration at its start; a point that may be another is let go."""
+        now = dict(changes)
+        turned = {name for name, value in now.items() if value != getattr(self, name)}
+        if "process" in turned:
+            now.setdefault("step", 0 if now["process"] == "register" else 2)
+        if self.selected is not None and self._renumbers(turned):
+            now.setdefault("selected", None)
+        return super().moved(now)
+
+    def _renumbers(self, turned: set[str]) -> bool:
+        others = turned - KEEPS_POINTS
+        if self.process != "outliers":
+            others -= {"neighbors", "deviations"}
+        return bool(others - {"step", "method", "distance"} if self.process == "register" else others)
+
+
+@dataclass(frozen=True)
+class Selected:
+    """One point: what was measured there, and its normal (null where the neighbours have none)."""
+
+    index: int
+    position: Array
+    color: Array | None
+    normal: Array | None
+    intensity: float | None
+
+
+@dataclass(frozen=True)
+class CloudSolution:
+    """What the sim knows of the shown points."""
+
+    points_in: int
+    points_out: int
+    minimum: Array
+    maximum: Array
+    dimensions: Array
+    selected: Selected | None
+    colored_by: str
+    """What the colours say: the dataset may not have what was asked for."""
+    ground: Ground | None
+    clusters: Clusters | None
+    outliers: Outliers | None
+    registration: Registered | None
+    surface: Surface | None
+    drawn: Drawn = drawn()
+
+
+def play(p: CloudParams) -> Iterator[Step]:
+    """The process from its start; without one, the cells grow."""
+    if p.process == "none":
+        yield Step({"voxel_size": 0.0}, 0.0)
+        yield Step({"voxel_size": 0.25}, 4.0)
+        return
+    last = MOST_STEPS if p.process == "register" else 2
+    for step in range(last + 1):
+        yield Step({"step": step}, 0.0)
+        yield Step({"step": step}, 0.25 if p.process == "register" else 1.0)
+
+
+def next_step(p: CloudParams) -> dict[str, Any]:
+    """One step on; from the last one back to the start."""
+    low, high = p.bounds("step")
+    return {"step": p.step + 1 if p.step < high else low}

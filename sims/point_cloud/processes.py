@@ -1,0 +1,224 @@
+"""The processes, on points that are thinned already; each result is kept for the steps that show it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from geometry import GeometryError, clouds, se3
+from geometry.arrays import Array
+from geometry.clouds import Indices
+from sims.kit.progress import goes_on
+from sims.kit.sim import drawn
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.work import normals, parts, spacing
+
+UP = np.array([0.0, 0.0, 1.0])
+STEEPEST = math.radians(20.0)
+LEAST_GROUND = 0.2
+"""Share of the points that must be on the ground before clusters are looked for without it."""
+LEAST_CLUSTER = 30
+MOST_STEPS = 40
+PAIRED = 12_000
+"""Points of the second scan, about, that take part in a registration."""
+MESHED = 8_000
+"""Points of a surface, about: an alpha shape takes its time."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The plane n·p + offset = 0 that most points are near to."""
+
+    normal: Array
+    offset: float
+    inliers: int
+    rms: float
+    distance: float
+    on: Indices = drawn()
+
+
+@dataclass(frozen=True)
+class Clusters:
+    """Sizes in points, the largest first, of groups with no gap wider than `distance`; `ground` says what is left out."""
+
+    sizes: list[int]
+    distance: float
+    without_ground: bool
+    unclustered: int
+    labels: Indices = drawn()
+
+
+@dataclass(frozen=True)
+class Outliers:
+    """How many points are farther than `threshold` from their neighbours, in the mean."""
+
+    removed: int
+    threshold: float
+    off: Indices = drawn()
+
+
+@dataclass(frozen=True)
+class Registered:
+    """ICP at one of its steps: `T` (4, 4) brings the second scan onto the first.
+
+    `error` is Σ‖R pᵢ + t − qᵢ‖² in m² over the pairs, `rmse` in metres, by iteration as well. `off` is how far in
+    metres a corner of the box is at most from its true place, null where that isn't known. `unobservable` are
+    directions of motion (rotation times lever, translation) that the pairs don't fix.
+    """
+
+    step: int
+    steps: int
+    T: Array
+    error: float
+    fitness: float
+    rmse: float | None
+    pairs: int
+    converged: bool
+    off: float | None
+    unobservable: Array
+    errors: list[float]
+    fitnesses: list[float]
+    rmses: list[float]
+    reach: float
+    links: Array = drawn()
+
+
+@dataclass(frozen=True)
+class Surface:
+    """An alpha shape: triangles, area in m², and the volume in m³ of what is closed."""
+
+    triangles: int
+    area: float
+    volume: float
+    radius: float
+    cell: float
+    points: int
+    vertices: Array = drawn()
+    faces: Indices = drawn()
+
+
+@lru_cache(maxsize=16)
+def ground(cloud: Cloud, thin: Cloud, distance: float) -> Ground | None:
+    """The ground, within 20° of level; None where no plane is, or there are too few points."""
+    distance = distance or 2.0 * spacing(cloud)
+    try:
+        plane = clouds.ransac_plane(thin.points, distance, up=UP, tilt=STEEPEST)
+    except GeometryError:
+        return None
+    on = np.flatnonzero(plane.inliers)
+    return Ground(plane.normal, plane.offset, len(on), plane.rms, distance, on)
+
+
+@lru_cache(maxsize=16)
+def clusters(cloud: Cloud, thin: Cloud, distance: float, voxel: float) -> Clusters:
+    """Clusters of what stands on the ground, where there is ground."""
+    below = ground(cloud, thin, 0.0)
+    above = np.arange(len(thin))
+    if below is not None and below.inliers >= LEAST_GROUND * len(thin):
+        above = np.delete(above, below.on)
+    distance = distance or max(8.0 * spacing(cloud), 2.0 * voxel)
+    least = LEAST_CLUSTER if voxel == 0.0 else 5
+    found = clouds.clusters(thin.points[above], distance, least=least, progress=goes_on)
+    labels = np.full(len(thin), -2, np.intp)
+    labels[above] = found.labels
+    alone = int(np.count_nonzero(labels == -1))
+    return Clusters(found.sizes.tolist(), distance, len(above) < len(thin), alone, labels)
+
+
+@lru_cache(maxsize=16)
+def outliers(thin: Cloud, neighbors: int, deviations: float) -> Outliers:
+    """Points that are unusually far from their neighbours."""
+    found = clouds.outliers(thin.points, neighbors, deviations, progress=goes_on)
+    off = np.flatnonzero(~found.keep)
+    return Outliers(len(off), found.threshold, off)
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """All steps of a registration, and which points of the second scan took part."""
+
+    steps: tuple[clouds.Step, ...]
+    source: Array
+    target: Array
+    converged: bool
+    unobservable: Array
+    reach: float
+
+
+@lru_cache(maxsize=8)
+def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: float) -> Course | None:
+    """ICP of the second scan to the first: pairs within a wide reach, then within a narrow one. None for one scan."""
+    rows = list(parts(thin))
+    if len(rows) < 2 or min(map(len, rows)) < 10:
+        return None
+    target = clouds.Target(thin.points[rows[0]], normals(thin, neighbors)[rows[0]])
+    source = thin.points[rows[1]][:: max(1, len(rows[1]) // PAIRED)]
+    reaches = (distance,) if distance else (18.0 * spacing(cloud), 3.0 * max(spacing(cloud), spacing(thin)))
+    steps: list[clouds.Step] = []
+    converged = False
+    for reach in reaches:
+        start = steps[-1].T_target_source if steps else np.eye(4)
+        left = MOST_STEPS + 1 - len(steps)
+        for k, step in enumerate(clouds.icp(source, target, reach, method=method, start=start, most=left)):
+            goes_on()
+            if k or not steps:
+                steps.append(step)
+            converged = k < left
+    steps = steps[: MOST_STEPS + 1]
+    paired = steps[-1].target >= 0
+    unobservable = np.empty((0, 6))
+    if paired.any():
+        moved = se3.apply(steps[-1].T_target_source, source[paired])
+        sides = target.normals[steps[-1].target[paired]] if method == "plane" else None
+        unobservable = clouds.observability(moved, sides).unobservable()
+    return Course(tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1])
+
+
+def registered(cloud: Cloud, way: Course, number: int) -> Registered:
+    """The state at a step; beyond the last one, the last."""
+    number = min(number, len(way.steps) - 1)
+    step = way.steps[number]
+    paired = np.flatnonzero(step.target >= 0)
+    shown = paired[:: max(1, len(paired) // 300)]
+    links = np.stack([se3.apply(step.T_target_source, way.source[shown]), way.target[step.target[shown]]], axis=1)
+    return Registered(
+        step=number, steps=len(way.steps) - 1, T=step.T_target_source, error=step.error, fitness=step.fitness,
+        rmse=_or_none(step.rmse), pairs=len(paired), converged=way.converged, off=_off(cloud, step.T_target_source),
+        unobservable=way.unobservable, errors=[s.error for s in way.steps], fitnesses=[s.fitness for s in way.steps],
+        rmses=[s.rmse if math.isfinite(s.rmse) else 0.0 for s in way.steps], reach=way.reach, links=links,
+    )  # fmt: skip
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _off(cloud: Cloud, T: Array) -> float | None:
+    if cloud.truth is None:
+        return None
+    low, high = clouds.bounds(cloud.points)
+    corners = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
+    return float(np.linalg.norm(se3.apply(T, corners) - se3.apply(cloud.truth, corners), axis=1).max())
+
+
+@lru_cache(maxsize=8)
+def surface(cloud: Cloud, thin: Cloud, voxel: float, distance: float) -> Surface | None:
+    """The alpha shape of one point a cell, with cells large enough that it doesn't take long; None if all is flat."""
+    low, high = clouds.bounds(thin.points)
+    cell = max(voxel, float((high - low).max()) / 90.0)
+    points = clouds.voxels(thin.points, cell).points if cell > voxel else thin.points
+    while len(points) > MESHED:
+        cell *= 1.05 * math.sqrt(len(points) / MESHED)
+        points = clouds.voxels(thin.points, cell).points
+    goes_on()
+    radius = distance or 1.5 * cell
+    try:
+        shape = clouds.alpha_shape(points, radius)
+    except GeometryError:
+        return None
+    return Surface(
+        len(shape.triangles), shape.area, shape.volume, radius, cell, len(points), shape.points, shape.triangles
+    )

@@ -1,0 +1,123 @@
+"""What is drawn of a state: two layers of points, lines and a mesh, each the same array as long as it is the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry import clouds
+from geometry.arrays import Array
+from geometry.clouds import Indices
+from sims.kit.palette import LIGHT, rgb
+from sims.point_cloud import colors, processes
+from sims.point_cloud.cloud import Cloud, Colors
+from sims.point_cloud.work import normals, painted, parts
+
+MOST_LINES = 2_000
+"""Normals that are drawn, evenly chosen."""
+MARKS = {"ground": rgb("#c46a1a"), "outliers": rgb(LIGHT.warn), "fixed": rgb(LIGHT.left), "moves": rgb(LIGHT.right)}
+Floats = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """Points that are drawn alike: rows of the thinned cloud, their places, and the colours to send."""
+
+    rows: Indices
+    points: Floats
+    colors: Colors
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """The points as they are (`base`), and those that a process marks (`marked`), drawn larger, in `T` (4, 4)."""
+
+    base: Layer
+    marked: Layer
+    T: Array
+    base_normals: Array
+    marked_normals: Array
+    ground: Array | None
+    """Corners (4, 3) of the piece of the plane that is drawn."""
+    mesh: processes.Surface | None
+    names: list[tuple[str, Array]]
+    """Words at places: the largest clusters, the scans."""
+
+
+NOTHING = np.empty(0, np.intp)
+NO_LINES = np.empty((0, 2, 3))
+
+
+@lru_cache(maxsize=16)
+def layer(cloud: Cloud, thin: Cloud, color: str, neighbors: int, kind: str, mark: str, result: object) -> Layer:
+    """One of the two layers; `kind` says which points, `mark` their colour, where it isn't that of the state."""
+    rows = _rows(thin, kind, result)
+    if mark == "clusters" and isinstance(result, processes.Clusters):
+        paint = colors.of_clusters(result.labels[rows])
+    elif mark:
+        paint = colors.one(MARKS.get(mark, colors.GREY), len(rows))
+    else:
+        paint = painted(cloud, thin, color, neighbors)[rows]
+    return Layer(rows, _places(thin)[rows], paint)
+
+
+@lru_cache(maxsize=16)
+def _places(thin: Cloud) -> Floats:
+    return thin.points.astype(np.float32)
+
+
+def _rows(thin: Cloud, kind: str, result: object) -> Indices:
+    """Rows of the thinned cloud that a layer has."""
+    everything = np.arange(len(thin))
+    if kind == "all":
+        return everything
+    if isinstance(result, processes.Ground):
+        return result.on if kind == "marked" else np.delete(everything, result.on)
+    if isinstance(result, processes.Outliers):
+        return result.off if kind == "marked" else np.delete(everything, result.off)
+    if isinstance(result, processes.Clusters):
+        chosen = {"above": result.labels > -2, "marked": result.labels >= 0, "rest": result.labels == -1}[kind]
+        return np.flatnonzero(chosen)
+    if kind in ("first", "second"):
+        return list(parts(thin))[kind == "second"]
+    return NOTHING
+
+
+def nothing(cloud: Cloud, thin: Cloud) -> Layer:
+    """A layer without points."""
+    return layer(cloud, thin, "", 0, "nothing", "ground", None)
+
+
+@lru_cache(maxsize=16)
+def lines(thin: Cloud, neighbors: int, points: Layer, length: float) -> Array:
+    """Pieces (n, 2, 3) from some of a layer's points along their normals."""
+    rows = points.rows[:: max(1, -(-len(points.rows) // MOST_LINES))]
+    vectors = normals(thin, neighbors)[rows]
+    start = thin.points[rows]
+    return np.stack([start, start + length * vectors], axis=1)[vectors.any(axis=1)]
+
+
+def patch(found: processes.Ground, low: Array, high: Array) -> Array:
+    """Corners (4, 3) of the ground plane over the box from `low` to `high`."""
+    a, b, c = found.normal.tolist()
+    corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
+    return np.array([(x, y, -(a * x + b * y + found.offset) / c) for x, y in corners])
+
+
+@lru_cache(maxsize=16)
+def extent(points: Layer) -> tuple[Array, Array]:
+    """Least and greatest coordinates of a layer that has points."""
+    return clouds.bounds(points.points)
+
+
+def cluster_names(found: processes.Clusters, thin: Cloud, most: int) -> list[tuple[str, Array]]:
+    """Numbers of the largest clusters, above the highest point of each."""
+    names = []
+    for number, size in enumerate(found.sizes[:most]):
+        here = thin.points[found.labels == number]
+        top = np.array([*here[:, :2].mean(axis=0), here[:, 2].max()])
+        names.append((f"{number + 1}: {size:,} points".replace(",", "\u2009"), top))
+    return names

@@ -1,0 +1,182 @@
+"""From a state to its solution: every piece is looked up, or made if nobody has asked for it lately."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from geometry import clouds, se3
+from geometry.arrays import Array
+from sims.point_cloud import processes, shown
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.datasets import dataset
+from sims.point_cloud.model import CloudParams, CloudSolution, Selected
+from sims.point_cloud.shown import NO_LINES, Drawn, Layer, layer
+from sims.point_cloud.work import colored_by, normals, spacing, thinned
+
+MOST_LABELS = 7
+
+
+def source(p: CloudParams) -> Cloud:
+    """The cloud of a state."""
+    return dataset(p.dataset)
+
+
+@dataclass
+class Result:
+    """What a process says, and which points it shows how."""
+
+    base: Layer
+    marked: Layer
+    T: Array = field(default_factory=lambda: np.eye(4))
+    ground: processes.Ground | None = None
+    clusters: processes.Clusters | None = None
+    outliers: processes.Outliers | None = None
+    registration: processes.Registered | None = None
+    surface: processes.Surface | None = None
+    names: list[tuple[str, Array]] = field(default_factory=list)
+
+
+def solve(p: CloudParams) -> CloudSolution:
+    """All that is shown of a state."""
+    cloud = source(p)
+    thin = thinned(cloud, p.voxel_size)
+    result = PROCESSES[p.process](p, cloud, thin)
+    low, high = _extent(result)
+    return CloudSolution(
+        points_in=len(cloud), points_out=len(result.base.rows) + len(result.marked.rows),
+        minimum=low, maximum=high, dimensions=high - low, selected=_selected(p, thin, result),
+        colored_by=colored_by(cloud, p.color), ground=result.ground, clusters=result.clusters,
+        outliers=result.outliers, registration=result.registration, surface=result.surface,
+        drawn=_drawn(p, cloud, thin, result, low, high),
+    )  # fmt: skip
+
+
+def plain(p: CloudParams, cloud: Cloud, thin: Cloud, kind: str = "all", result: object = None) -> Layer:
+    """Points in the colours of the state."""
+    return layer(cloud, thin, p.color, p.neighbors if p.color == "normals" else 0, kind, "", result)
+
+
+def marked(cloud: Cloud, thin: Cloud, kind: str, mark: str, result: object) -> Layer:
+    """Points in a colour of their own, whatever that of the state is."""
+    return layer(cloud, thin, "", 0, kind, mark, result)
+
+
+def _none(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    return Result(plain(p, cloud, thin), shown.nothing(cloud, thin))
+
+
+def _ground(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    found = processes.ground(cloud, thin, p.distance)
+    result = _none(p, cloud, thin)
+    if found is None or p.step == 0:
+        return result
+    result.ground = found
+    result.base = plain(p, cloud, thin, "rest", found)
+    if p.step == 1:
+        result.marked = marked(cloud, thin, "marked", "ground", found)
+    return result
+
+
+def _clusters(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    result = _none(p, cloud, thin)
+    if p.step == 0:
+        return result
+    found = processes.clusters(cloud, thin, p.distance, p.voxel_size)
+    if p.step == 1:
+        result.base = plain(p, cloud, thin, "above", found)
+        return result
+    result.clusters = found
+    result.base = marked(cloud, thin, "rest", "grey", found)
+    result.marked = marked(cloud, thin, "marked", "clusters", found)
+    result.names = shown.cluster_names(found, thin, MOST_LABELS - 4)
+    return result
+
+
+def _outliers(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    result = _none(p, cloud, thin)
+    if p.step == 0 or len(thin) < 2:
+        return result
+    result.outliers = found = processes.outliers(thin, p.neighbors, p.deviations)
+    result.base = plain(p, cloud, thin, "rest", found)
+    if p.step == 1:
+        result.marked = marked(cloud, thin, "marked", "outliers", found)
+    return result
+
+
+def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    way = processes.course(cloud, thin, p.method, p.neighbors if p.method == "plane" else 16, p.distance)
+    if way is None:
+        return _none(p, cloud, thin)
+    first, second = (marked(cloud, thin, kind, mark, None) for kind, mark in (("first", "fixed"), ("second", "moves")))
+    found = processes.registered(cloud, way, p.step)
+    return Result(first, second, found.T, registration=found)
+
+
+def _surface(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
+    result = _none(p, cloud, thin)
+    if p.step > 0:
+        result.surface = processes.surface(cloud, thin, p.voxel_size, p.distance)
+    return result
+
+
+PROCESSES = {
+    "none": _none, "ground": _ground, "clusters": _clusters, "outliers": _outliers, "register": _register,
+    "surface": _surface,
+}  # fmt: skip
+
+
+def _extent(result: Result) -> tuple[Array, Array]:
+    """Of all points that are shown; where none is left, of nothing at the origin."""
+    ends = [shown.extent(result.base)] if len(result.base.rows) else []
+    if len(result.marked.rows) and result.registration is None:
+        ends.append(shown.extent(result.marked))
+    elif len(result.marked.rows):
+        ends.append(clouds.bounds(se3.apply(result.T, result.marked.points)))
+    if not ends:
+        return np.zeros(3), np.zeros(3)
+    return np.minimum(*_two([e[0] for e in ends])), np.maximum(*_two([e[1] for e in ends]))
+
+
+def _two(values: list[Array]) -> tuple[Array, Array]:
+    return values[0], values[-1]
+
+
+def _selected(p: CloudParams, thin: Cloud, result: Result) -> Selected | None:
+    """The point of that number: those of the first layer come first."""
+    if p.selected is None or p.selected >= len(result.base.rows) + len(result.marked.rows):
+        return None
+    at = p.selected - len(result.base.rows)
+    row, T = (result.base.rows[p.selected], np.eye(4)) if at < 0 else (result.marked.rows[at], result.T)
+    normal = normals(thin, p.neighbors)[row]
+    return Selected(
+        index=p.selected,
+        position=se3.apply(T, thin.points[row]),
+        color=None if thin.colors is None else thin.colors[row],
+        normal=T[:3, :3] @ normal if normal.any() else None,
+        intensity=None if thin.intensity is None else float(thin.intensity[row]),
+    )
+
+
+def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array, high: Array) -> Drawn:
+    base, over = NO_LINES, NO_LINES
+    if p.show_normals:
+        length = 4.0 * max(spacing(cloud), p.voxel_size / 2.0)
+        base, over = (shown.lines(thin, p.neighbors, one, length) for one in (result.base, result.marked))
+    ground = None if result.ground is None else shown.patch(result.ground, low, high)
+    return Drawn(
+        result.base, result.marked, result.T, base, over, ground, result.surface, result.names,
+    )  # fmt: skip
+
+
+def pick(p: CloudParams, ray: tuple[float, ...]) -> dict[str, int | None]:
+    """Select the shown point that a ray (origin, direction) points at, or none."""
+    cloud = source(p)
+    thin = thinned(cloud, p.voxel_size)
+    result = PROCESSES[p.process](p, cloud, thin)
+    points = result.base.points
+    if len(result.marked.rows):
+        points = np.concatenate([points, se3.apply(result.T, result.marked.points)])
+    found = clouds.pick(points, ray[:3], ray[3:]) if len(points) else None
+    return {"selected": None if found is None else found.index}
