@@ -15,7 +15,7 @@ from starlette.templating import Jinja2Templates
 from app.settings import ROOT
 from sims import SIMS
 from sims.kit import viser_client
-from sims.kit.params import Complaint
+from sims.kit.params import Complaint, Params
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
@@ -78,11 +78,12 @@ def _is_view(text: str) -> bool:
     return len(values) == 6 and all(math.isfinite(v) and abs(v) < 1e4 for v in values) and values[:3] != values[3:]
 
 
-def viewer(request: Request, sim: AnySim, *, watching: bool) -> Response:
-    """The page of a session: viser's client with our companion."""
+def viewer(request: Request, sim: AnySim, params: Params, *, watching: bool) -> Response:
+    """The page of a session in a state: viser's client with our companion."""
+    view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
         "slug": sim.slug, "title": sim.title, "watching": watching,
-        "view": [*sim.view.position, *sim.view.look_at], "radius": sim.view.radius, "panes": sim.panes is not None,
+        "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     client = f"{base(request)}/viser/{viser_client.fingerprint()}"

@@ -16,6 +16,8 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from contextvars import copy_context
 from typing import Any
 
 from pydantic import ValidationError
@@ -23,6 +25,7 @@ from pydantic import ValidationError
 from app.motion import play
 from geometry import GeometryError
 from sims.kit.params import Params, clipped
+from sims.kit.progress import Superseded, stale
 from sims.kit.sim import Sim, Step
 from sims.kit.viewer import Viewer
 
@@ -32,6 +35,8 @@ STATE_INTERVAL = 0.4
 a hundred times in 30 s."""
 LOADING = 10.0
 """Seconds that a page may take from its address to its websockets; its session is kept so long at least."""
+PATIENCE = 0.2
+"""Seconds that a solve in the pool goes on for while a newer state waits."""
 UNVISITED = 60.0
 """Seconds that a session without viewers is kept."""
 
@@ -43,7 +48,8 @@ class Session:
         self.sim = sim
         self.room = room
         self.params = self.initial = self._solved = params
-        self.solution: Any = sim.solve(params)
+        self.solution: Any = None if sim.heavy else sim.solve(params)
+        """None until what takes long is there."""
         self.viewers: set[Viewer] = set()
         self.listeners: set[Callable[[dict[str, Any]], None]] = set()
         self.left_at = time.monotonic()
@@ -52,11 +58,14 @@ class Session:
         self._drawing: asyncio.Task[None] | None = None
         self._dirty = False
         self._motion: asyncio.Task[None] | None = None
+        self._seeking: asyncio.Task[None] | None = None
         self._told_at = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self.reduced_motion = False
         self.waiting = False
         """Only people who watch have come so far."""
+        if sim.heavy:
+            self.redraw()
 
     def begin(self, params: Params, opened: Params) -> None:
         """Somebody with control comes, and brings the room's state and the one that a reset leads back to."""
@@ -78,7 +87,16 @@ class Session:
         handle = self.sim.handles.get(name)
         if handle is None:
             raise KeyError(name)
-        self.change(handle(self.params, place))
+        if self.sim.heavy:
+            self._seeking = asyncio.get_running_loop().create_task(self._seek(handle, place))
+        else:
+            self.change(handle(self.params, place))
+
+    async def _seek(self, handle: Callable[..., Mapping[str, Any]], place: tuple[float, ...]) -> None:
+        """Find out in the pool what a handle's place means."""
+        changes = await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
+        with suppress(ValidationError):
+            self.change(changes)
 
     def point(self, name: str) -> None:
         """Light up in every scene what somebody points at in a picture or table; an empty name is nothing."""
@@ -132,11 +150,13 @@ class Session:
                 try:
                     self.solution = await self._solve(params)
                     self._solved = params
+                except Superseded:
+                    continue
                 except GeometryError as error:
                     self._tell({"type": "error", "message": str(error)})
                     if self.params is params:
                         self.params = self._solved
-                for viewer in list(self.viewers):
+                for viewer in list(self.viewers) if self.solution is not None else ():
                     self._show(viewer)
                 self._tell_state_soon()
         except Exception:
@@ -154,13 +174,20 @@ class Session:
     async def _solve(self, params: Params) -> Any:
         if not self.sim.heavy:
             return self.sim.solve(params)
-        return await asyncio.get_running_loop().run_in_executor(self._pool, self.sim.solve, params)
+        context = copy_context()
+        context.run(stale.set, self._out_of_date(time.monotonic() + PATIENCE))
+        return await asyncio.get_running_loop().run_in_executor(self._pool, context.run, self.sim.solve, params)
+
+    def _out_of_date(self, until: float) -> Callable[[], bool]:
+        """Whether a newer state waits, for longer than anybody should."""
+        return lambda: self._dirty and time.monotonic() > until
 
     def state(self) -> dict[str, Any]:
         """The state message for pages."""
+        words = "" if self.solution is None else self.sim.describe(self._solved, self.solution)
         return {
             "type": "state", "version": self.version, "params": self.params.model_dump(mode="json"),
-            "query": self.params.query(), "text": self.sim.describe(self._solved, self.solution),
+            "query": self.params.query(), "text": words,
         }  # fmt: skip
 
     def _tell(self, message: dict[str, Any]) -> None:
@@ -181,7 +208,8 @@ class Session:
     def join(self, viewer: Viewer) -> None:
         """Add a viewer and show it the present state."""
         self.viewers.add(viewer)
-        viewer.draw(self._solved, self.solution)
+        if self.solution is not None:
+            viewer.draw(self._solved, self.solution)
 
     def leave(self, viewer: Viewer | None = None, listener: Callable[[dict[str, Any]], None] | None = None) -> None:
         """Forget a viewer or a channel."""

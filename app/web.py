@@ -147,13 +147,15 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
             raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
         if known and pages.split_options(request.query_params.multi_items())[0]:
             session.change(params.model_dump(), live=False)
-        return pages.viewer(request, sim, watching=False)
+        return pages.viewer(request, sim, session.params, watching=False)
 
     @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
     async def watched(request: Request, slug: str, room: str) -> Response:
         if not is_room(room):
             raise HTTPException(404, "There is no such room.")
-        return pages.viewer(request, sim_or_404(slug), watching=True)
+        sim = sim_or_404(slug)
+        known = sessions.find(sim, room)
+        return pages.viewer(request, sim, known.params if known else sim.params(), watching=True)
 
     @app.get("/viser/{fingerprint}/{name}", include_in_schema=False)
     async def client(request: Request, fingerprint: str, name: str) -> Response:

@@ -10,6 +10,7 @@ from sims.epipolar import SIM as EPIPOLAR
 from sims.euler_angles import SIM as EULER_ANGLES
 from sims.gimbal_lock import SIM as GIMBAL_LOCK
 from sims.kit.sim import Sim
+from sims.point_cloud import SIM as POINT_CLOUD
 from sims.quaternion import SIM as QUATERNION
 from sims.transform_chain import SIM as TRANSFORM_CHAIN
 from sims.triangulation import SIM as TRIANGULATION
@@ -23,6 +24,7 @@ SIMS: tuple[Sim[Any, Any], ...] = (
     CAMERA,
     EPIPOLAR,
     TRIANGULATION,
+    POINT_CLOUD,
 )
 
 

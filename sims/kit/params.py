@@ -171,7 +171,7 @@ class BadParams(ValueError):
 
 
 def number(
-    default: float,
+    default: float | None,
     low: float,
     high: float,
     *,
@@ -183,7 +183,10 @@ def number(
     group: str = "",
     control: str = "slider",
 ) -> Any:
-    """A number with bounds (inclusive) in `unit`. `control`: slider, number or none."""
+    """A number with bounds (inclusive) in `unit`. `control`: slider, number or none.
+
+    One that may be absent (None) has a number box, in which one step below the least value stands for that.
+    """
     return Field(
         default, ge=low, le=high, title=title, description=description,
         json_schema_extra={"step": step, "unit": unit, "symbol": symbol, "group": group, "control": control},

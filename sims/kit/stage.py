@@ -22,6 +22,8 @@ from sims.kit.viser_internals import send_pose, set_pose, set_property, set_visi
 Vector = Sequence[float] | npt.NDArray[np.float64]
 Quaternion = tuple[float, float, float, float]
 Drag = Callable[["Dragged"], None]
+FIELD = 0.7
+"""Vertical field of view in radians, as boot.js sets it."""
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -71,13 +73,34 @@ class Solid(Node):
         """Move the corners (n, 3) of its faces."""
         set_property(self.handle, "vertices", vertices.astype(np.float32))
 
+    def shape(self, vertices: npt.NDArray[np.float64], faces: npt.NDArray[Any]) -> None:
+        """Become another body: corners (n, 3), and the three corners of each face (m, 3)."""
+        self.vertices(vertices)
+        set_property(self.handle, "faces", faces.astype(np.uint32))
+
 
 class Cloud(Node):
-    """Many dots of one colour."""
+    """Many dots, of one colour or each of its own."""
 
     def points(self, points: npt.NDArray[np.float64]) -> None:
         """Move the dots to places of shape (n, 3)."""
         set_property(self.handle, "points", points.astype(np.float32))
+
+    def draw(self, points: npt.NDArray[np.float32], colors: npt.NDArray[np.uint8]) -> None:
+        """Dots (n, 3) and their colours (n, 3), as `palette.before_film` makes them; both are kept, not copied."""
+        if points is not self.handle._impl.props.points:
+            set_property(self.handle, "points", points)
+        self.paint(colors)
+
+    def paint(self, colors: npt.NDArray[np.uint8]) -> None:
+        """Colours (n, 3) of the dots."""
+        if colors is not self.handle._impl.props.colors:
+            set_property(self.handle, "colors", colors)
+
+    def size(self, metres: float) -> None:
+        """Diameter of each dot."""
+        if metres != self.handle._impl.props.point_size:
+            set_property(self.handle, "point_size", metres)
 
 
 class Lines(Node):
@@ -195,18 +218,20 @@ class Stage:
     def __init__(
         self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Dragged], None],
         pick: Callable[[str], None] = lambda name: None,
+        point: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
     ) -> None:  # fmt: skip
         self.client = client
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
         self._pick = pick
+        self._point = point
 
-    def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> None:
+    def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> Node:
         """The light floor grid, and soft light from above."""
         grey = (58, 66, 76) if self.palette.dark else (222, 226, 230)
         section = (78, 88, 100) if self.palette.dark else (200, 206, 212)
-        self.scene.add_grid(
+        grid = self.scene.add_grid(
             "/ground", width=size, height=size, plane="xy", cell_size=cell, section_size=2 * cell,
             cell_color=grey, section_color=section, cell_thickness=0.6, section_thickness=0.9,
             position=(0.0, 0.0, height), shadow_opacity=0.0,
@@ -216,6 +241,23 @@ class Stage:
         self.scene.configure_environment_map(None)
         self.scene.add_light_hemisphere("/sky", sky_color=(255, 255, 255), ground_color=(150, 158, 168), intensity=2.6)
         self.scene.add_light_directional("/sun", intensity=1.2, position=(2.0, -3.0, 6.0))
+        return Node(grid)
+
+    def rays(self, name: str) -> None:
+        """Have the session hear under `name` of each click into the scene, as a ray: origin, then unit direction."""
+
+        @self.scene.on_click()
+        async def _(event: Any) -> None:
+            self._point(name, (*event.ray_origin, *event.ray_direction))
+
+    def look(self, position: Vector, look_at: Vector, radius: float) -> None:
+        """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
+        camera = self.client.camera
+        half = math.tan(0.5 * FIELD) * min(1.0, camera.aspect)
+        away = np.subtract(position, look_at)
+        away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))
+        camera.position = np.add(look_at, away)
+        camera.look_at = np.asarray(look_at, dtype=float)
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""

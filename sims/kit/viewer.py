@@ -57,14 +57,20 @@ class Control:
     """Least and greatest value, for the controls whose bounds may change."""
     offered: Mapping[Any, str] | None = None
     """Of a dropdown: each value of the parameter, and how it is shown."""
+    absent: float | None = None
+    """What stands for a number that isn't there."""
 
     def draw(self, params: Params) -> None:
         value = getattr(params, self.name)
-        set_value(self.handle, value if self.offered is None else self.offered[value])
+        if self.offered is not None:
+            value = self.offered[value]
+        set_value(self.handle, self.absent if value is None else value)
 
     def value(self, shown: Any) -> Any:
         """What the learner set. Raises LookupError for what isn't offered."""
-        return shown if self.offered is None else {words: value for value, words in self.offered.items()}[shown]
+        if self.offered is None:
+            return None if self.absent is not None and shown == self.absent else shown
+        return {words: value for value, words in self.offered.items()}[shown]
 
     def reword(self, params: Params) -> None:
         """Adapt label, bounds and what is offered, before a value that needs them is drawn."""
@@ -137,8 +143,8 @@ class Viewer:
         self._readouts: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
-        self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked))
-        client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window as the first drawing
+        self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked, self._pointed))
+        self._live = False
 
     def input(self, control: str, value: Any) -> bool | None:
         """Take what the page says that a control is set to. None if no control has that name, False if it can't be."""
@@ -155,6 +161,9 @@ class Viewer:
         """Show a state; only what differs is sent, in one window."""
         with self.client.atomic():
             self.scene.draw(params, solution)
+            if not self._live:
+                self._live = True
+                self.client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window
             if (form := params.form()) != self._form:
                 self._form = form
                 for control in self._controls:
@@ -247,6 +256,7 @@ class Viewer:
         label = worded(params, name)
         bounds: tuple[float, float] | None = None
         offered: Mapping[Any, str] | None = None
+        absent: float | None = None
         handle: Any
         if hints["control"] in ("numbers", "letters"):
             return Entries(gui, params, name, shared, self._listen, self._host.change)
@@ -261,12 +271,15 @@ class Viewer:
             handle = add(label, value, min=least, max=greatest, step=hints["step"], **shared)
         elif hints["control"] == "number":
             low, high = params.bounds(name)
+            if field.default is None:
+                low = absent = low - hints["step"]
+            value = absent if value is None else value
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
         else:
             bounds = params.bounds(name)
             handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
 
-        control = Control(name, handle, label, bounds, offered)
+        control = Control(name, handle, label, bounds, offered, absent)
         self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
         return control
 
@@ -295,6 +308,10 @@ class Viewer:
         with suppress(ValueError):
             if not self.look.watching:
                 self._host.change({"selected": name})
+
+    def _pointed(self, name: str, ray: tuple[float, ...]) -> None:
+        if not self.look.watching:
+            self._host.drag(name, ray)
 
     def _dragged(self, name: str, dragged: Dragged) -> None:
         if not self.look.watching:

@@ -1,1 +1,60 @@
 """point-cloud: clouds of points, their attributes, and the operations everybody uses on them."""
+
+from __future__ import annotations
+
+from sims.kit.sim import Action, Objective, Sim
+from sims.point_cloud import model
+from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution
+from sims.point_cloud.pictures import panes
+from sims.point_cloud.scene import CloudScene
+from sims.point_cloud.solving import pick, solve
+from sims.point_cloud.words import describe, readouts
+
+__all__ = ["SIM", "CloudParams", "CloudSolution", "solve"]
+
+SIM = Sim(
+    slug="point-cloud",
+    title="Point cloud",
+    summary="Look into scans of many thousand points: thin them, colour them, and find surfaces, things and motions.",
+    concepts=("Point Clouds", "Voxel Grid", "Normals", "Registration (ICP)"),
+    objectives=(
+        Objective("Read the attributes of points: position, colour, intensity and normal", "Understand"),
+        Objective("Thin a cloud with voxels, and say what is lost", "Apply"),
+        Objective("Choose parameters that part ground, things and outliers", "Analyze"),
+        Objective("Judge a registration by its error, its fitness and what the data leave open", "Evaluate"),
+    ),
+    params=CloudParams,
+    solve=solve,
+    scene=CloudScene,
+    readouts=readouts,
+    describe=describe,
+    view=VIEWS["room"],
+    view_of=model.view_of,
+    panes=panes,
+    actions=(
+        Action("play", "Play", "The process from its start; without one, growing voxels", model.play),
+        Action("step", "Next step", "The process one step on; from the last one back to its start", model.next_step),
+    ),
+    handles={"/cloud": pick},
+    states={
+        "street": {"dataset": "street", "color": "intensity"},
+        "street without colours": {"dataset": "street"},
+        "statue": {"dataset": "statue", "color": "height"},
+        "two scans": {"dataset": "two-scans"},
+        "voxels": {"voxel_size": 0.1, "color": "height", "point_size": 4.0},
+        "one voxel a metre": {"voxel_size": 1.0, "show_normals": True, "color": "normals", "point_size": 8.0},
+        "normals": {"voxel_size": 0.05, "show_normals": True, "color": "normals"},
+        "selected": {"selected": 50_000, "show_box": False},
+        "no such point": {"selected": 5_000_000},
+        "ground marked": {"process": "ground", "step": 1},
+        "things on the street": {"dataset": "street", "process": "clusters", "show_box": False, "voxel_size": 0.1},
+        "outliers marked": {"dataset": "statue", "process": "outliers", "step": 1},
+        "scans apart": {"dataset": "two-scans", "process": "register", "step": 0},
+        "scans together": {"dataset": "two-scans", "process": "register", "step": 40},
+        "points to points": {"dataset": "two-scans", "process": "register", "step": 7, "method": "point", "selected": 90_000},
+        "statue's surface": {"dataset": "statue", "process": "surface", "step": 2},
+        "no surface": {"dataset": "statue", "process": "surface", "distance": 0.01, "voxel_size": 0.1},
+        "nothing left": {"process": "clusters", "step": 1, "voxel_size": 1.0},
+    },
+    heavy=True,
+)  # fmt: skip

@@ -8,13 +8,17 @@ from typing import Any, Literal, Self
 
 from geometry.arrays import Array
 from sims.kit.params import Params, choice, number, switch
-from sims.kit.sim import Step, drawn
-from sims.point_cloud.processes import Clusters, Ground, Outliers, Registered, Surface
+from sims.kit.sim import Step, View, drawn
+from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
 from sims.point_cloud.shown import Drawn
 
 MOST_POINTS = 10_000_000
-MOST_STEPS = 40
-"""Of ICP."""
+VIEWS = {
+    "room": View((4.6, -5.8, 4.4), (0.0, 0.0, 1.0), 3.3),
+    "street": View((26.0, -48.0, 34.0), (3.0, 0.0, 0.0), 40.0),
+    "statue": View((2.6, -3.6, 2.2), (0.05, 0.0, 1.15), 1.6),
+    "two-scans": View((3.4, -5.6, 3.4), (-0.1, 0.0, 0.95), 2.9),
+}
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
 WHAT_DISTANCE_IS = {
@@ -111,7 +115,7 @@ class CloudParams(Params):
         return bool(others - {"step", "method", "distance"} if self.process == "register" else others)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Selected:
     """One point: what was measured there, and its normal (null where the neighbours have none)."""
 
@@ -122,7 +126,7 @@ class Selected:
     intensity: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CloudSolution:
     """What the sim knows of the shown points."""
 
@@ -158,3 +162,8 @@ def next_step(p: CloudParams) -> dict[str, Any]:
     """One step on; from the last one back to the start."""
     low, high = p.bounds("step")
     return {"step": p.step + 1 if p.step < high else low}
+
+
+def view_of(p: CloudParams) -> View:
+    """A view that fits the cloud: they are of very different sizes."""
+    return VIEWS[p.dataset]

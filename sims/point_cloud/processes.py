@@ -28,7 +28,7 @@ MESHED = 8_000
 """Points of a surface, about: an alpha shape takes its time."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ground:
     """The plane n·p + offset = 0 that most points are near to."""
 
@@ -40,7 +40,7 @@ class Ground:
     on: Indices = drawn()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Clusters:
     """Sizes in points, the largest first, of groups with no gap wider than `distance`; `ground` says what is left out."""
 
@@ -51,7 +51,7 @@ class Clusters:
     labels: Indices = drawn()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Outliers:
     """How many points are farther than `threshold` from their neighbours, in the mean."""
 
@@ -60,7 +60,7 @@ class Outliers:
     off: Indices = drawn()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Registered:
     """ICP at one of its steps: `T` (4, 4) brings the second scan onto the first.
 
@@ -86,7 +86,7 @@ class Registered:
     links: Array = drawn()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """An alpha shape: triangles, area in m², and the volume in m³ of what is closed."""
 

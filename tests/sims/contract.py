@@ -126,4 +126,20 @@ GOLDEN: dict[str, tuple[str, dict[str, Any]]] = {
             "method": "optimal",
         },
     ),
+    "point-cloud": (
+        "dataset=statue&color=height&point_size=3&voxel_size=0.05&show_normals=1&neighbors=20&show_box=0&selected=12"
+        "&process=outliers&step=1",
+        {
+            "dataset": "statue",
+            "color": "height",
+            "point_size": 3.0,
+            "voxel_size": 0.05,
+            "show_normals": True,
+            "neighbors": 20,
+            "show_box": False,
+            "selected": 12,
+            "process": "outliers",
+            "step": 1,
+        },
+    ),
 }

@@ -269,6 +269,8 @@ def shown(params: Params, name: str) -> Any:
     value = getattr(params, name)
     if extra(type(params).model_fields[name])["control"] in ("choice", "option"):
         return params.options(name)[value]
+    if value is None:
+        return params.bounds(name)[0] - extra(type(params).model_fields[name])["step"]
     return list(value) if isinstance(value, tuple) else value
 
 

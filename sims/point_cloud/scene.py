@@ -1,0 +1,200 @@
+"""The scene: the points, the box round them, normals, the selected point, and what a process found."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import trimesh
+
+from geometry import quaternion
+from geometry.arrays import Array
+from sims.kit.readout import THIN, figure, quantity
+from sims.kit.stage import Cloud, Lines, Node, Stage
+from sims.point_cloud.model import CloudParams, CloudSolution, Selected, view_of
+from sims.point_cloud.shown import Layer
+
+PIXELS = 350.0
+"""Pixels, about, that the radius of the first view takes."""
+NOWHERE = np.zeros((1, 3), np.float32)
+MARKED = 1.5
+"""How much larger marked points are."""
+NAMES = 4
+RING = 0.03
+"""Radius of the ring round the selected point, of the view's."""
+
+
+class CloudScene:
+    """Everything is in the cloud's own frame; the second scan of a registration moves as one."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.floor = stage.ground()
+        self.base = Points(stage, "/cloud")
+        self.marked = Points(stage, "/marked")
+        self.box = Box(stage)
+        self.ring = Ring(stage)
+        self.plane = Patch(stage)
+        self.mesh = Mesh(stage)
+        self.links = stage.lines("/pairs", np.zeros((2, 3)), "held", width=1.5)
+        self.names = [stage.label(f"/name{k}", "", anchor="bottom-center") for k in range(NAMES)]
+        self._dataset = ""
+        self._links: Array | None = None
+        stage.rays("/cloud")
+
+    def draw(self, p: CloudParams, s: CloudSolution) -> None:
+        view = view_of(p)
+        if p.dataset != self._dataset:
+            self._turn_to(p)
+        size = p.point_size * view.radius / PIXELS
+        alone = s.surface is not None and p.step == 2
+        self.base.draw(s.drawn.base, s.drawn.base_normals, size, hidden=alone)
+        self.marked.draw(s.drawn.marked, s.drawn.marked_normals, MARKED * size)
+        self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
+        self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
+        self.ring.draw(s.selected, view.radius)
+        self.plane.draw(s.drawn.ground)
+        self.mesh.draw(s)
+        self._pairs(s)
+        self._names(s)
+
+    def _turn_to(self, p: CloudParams) -> None:
+        """Another cloud may be far larger: look at all of it, and lay the floor for it."""
+        view = view_of(p)
+        if self._dataset:
+            self.stage.look(view.position, view.look_at, view.radius)
+        self._dataset = p.dataset
+        self.floor.scale(round(view.radius / 2.5) or 1.0)
+        self.floor.pose(position=(0.0, 0.0, -0.01 * view.radius))
+
+    def _pairs(self, s: CloudSolution) -> None:
+        links = None if s.registration is None else s.registration.links
+        self.links.show(links is not None and len(links) > 0)
+        if links is not None and links is not self._links and len(links):
+            self.links.pieces(links)
+        self._links = links
+
+    def _names(self, s: CloudSolution) -> None:
+        for k, label in enumerate(self.names):
+            label.show(k < len(s.drawn.names))
+            if k < len(s.drawn.names):
+                words, place = s.drawn.names[k]
+                label.text(words)
+                label.pose(position=place.tolist())
+
+
+class Points:
+    """One layer of points with their normals."""
+
+    def __init__(self, stage: Stage, name: str) -> None:
+        self.node = stage.group(name)
+        self.dots: Cloud = stage.cloud(f"{name}/points", NOWHERE, "ink")
+        self.lines: Lines = stage.lines(f"{name}/normals", np.zeros((2, 3)), "ink", width=1.2)
+        self._layer: Layer | None = None
+        self._normals: Array | None = None
+
+    def draw(self, layer: Layer, normals: Array, size: float, *, hidden: bool = False) -> None:
+        self.dots.show(len(layer.points) > 0 and not hidden)
+        self.dots.size(size)
+        if layer is not self._layer and len(layer.points):
+            self.dots.draw(layer.points, layer.colors)
+        self._layer = layer
+        self.lines.show(len(normals) > 0)
+        if normals is not self._normals and len(normals):
+            self.lines.pieces(normals)
+        self._normals = normals
+
+
+class Box:
+    """The box along the axes, with its dimensions at the edges that are nearest to the first view."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.node = stage.group("/box")
+        self.edges = stage.lines("/box/edges", np.zeros((2, 3)), "ghost", width=1.5)
+        self.labels = [stage.label(f"/box/{axis}", "") for axis in "xyz"]
+        self._shown: tuple[list[float], list[float]] | None = None
+
+    def draw(self, low: Array, high: Array, visible: bool) -> None:
+        self.node.show(visible)
+        for label in self.labels:
+            label.show(visible)
+        ends = low.tolist(), high.tolist()
+        if not visible or ends == self._shown:
+            return
+        self._shown = ends
+        self.edges.pieces(box_edges(low, high))
+        middle = 0.5 * (low + high)
+        places = (middle[0], low[1], low[2]), (high[0], middle[1], low[2]), (high[0], low[1], middle[2])
+        for axis, label, place, length in zip("xyz", self.labels, places, (high - low).tolist(), strict=True):
+            label.text(f"{axis} {quantity(length, 'm', 2)}")
+            label.pose(position=place)
+
+
+def box_edges(low: Array, high: Array) -> Array:
+    """The twelve edges (12, 2, 3) of a box."""
+    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
+    pairs = [(k, k | 1 << axis) for k in range(8) for axis in range(3) if not k >> axis & 1]
+    return corners[np.array(pairs)]
+
+
+class Ring:
+    """Rings round the selected point, with its coordinates, and its normal."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.node: Node = stage.group("/selected")
+        ring = trimesh.creation.torus(major_radius=1.0, minor_radius=0.09, major_sections=48, minor_sections=8)
+        turns = np.eye(4), trimesh.transformations.rotation_matrix(math.pi / 2.0, [1, 0, 0])
+        self.rings = [
+            stage.mesh(f"/selected/ring{k}", ring.copy().apply_transform(turn), "held") for k, turn in enumerate(turns)
+        ]
+        self.normal = stage.lines("/selected/normal", np.zeros((2, 3)), "held", width=3.0)
+        self.label = stage.label("/selected/label", "", anchor="bottom-left")
+
+    def draw(self, selected: Selected | None, radius: float) -> None:
+        self.node.show(selected is not None)
+        self.label.show(selected is not None)
+        if selected is None:
+            return
+        self.node.pose(position=selected.position.tolist())
+        for ring in self.rings:
+            ring.scale(RING * radius)
+        self.normal.show(selected.normal is not None)
+        if selected.normal is not None:
+            self.normal.stroke((0.0, 0.0, 0.0), (3.0 * RING * radius * selected.normal).tolist())
+        x, y, z = (figure(v, 2) for v in selected.position.tolist())
+        self.label.text(f"({x}, {y}, {z}){THIN}m")
+        self.label.pose(position=(0.0, 0.0, 1.4 * RING * radius))
+
+
+class Patch:
+    """The piece of the ground plane over the box."""
+
+    def __init__(self, stage: Stage) -> None:
+        flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
+        self.face = stage.mesh("/ground_plane", flat, "held", opacity=0.28, side="double", flat=True)
+        self.rim = stage.lines("/ground_plane/rim", np.zeros((5, 3)), "held", width=2.5)
+        self.label = stage.label("/ground_plane/label", "ground")
+
+    def draw(self, corners: Array | None) -> None:
+        self.face.show(corners is not None)
+        self.label.show(corners is not None)
+        if corners is not None:
+            self.face.vertices(corners)
+            self.rim.path(corners[[0, 1, 2, 3, 0]])
+            self.label.pose(position=(0.5 * (corners[0] + corners[3])).tolist())
+
+
+class Mesh:
+    """The surface."""
+
+    def __init__(self, stage: Stage) -> None:
+        start = trimesh.Trimesh(np.eye(3), [[0, 1, 2]], process=False)
+        self.body = stage.mesh("/surface", start, (178, 172, 160), side="double", flat=True)
+        self._vertices: Array | None = None
+
+    def draw(self, s: CloudSolution) -> None:
+        found = s.surface if s.surface is not None and s.surface.triangles else None
+        self.body.show(found is not None)
+        if found is not None and found.vertices is not self._vertices:
+            self._vertices = found.vertices
+            self.body.shape(found.vertices, found.faces)

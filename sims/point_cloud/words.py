@@ -1,0 +1,153 @@
+"""Read-outs, and a sentence for people who listen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, symbol
+from sims.point_cloud.model import CloudParams, CloudSolution
+from sims.point_cloud.processes import Registered
+from sims.point_cloud.solving import source
+
+SENSORS = {
+    "room": "a colour scanner at two places in a room",
+    "street": "a rotating lidar with 64 rings on a car: shadows behind things, no colours",
+    "statue": "a scanner at four places, with 2 mm of noise and one point in fifty thrown off",
+    "two-scans": "a scanner at two places; the second scan isn't where it belongs",
+}
+
+
+def count(number: int) -> str:
+    """A whole number in groups of three digits."""
+    return f"{number:,}".replace(",", THIN)
+
+
+def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
+    """Numbers beside the scene."""
+    yield from _warnings(p, s)
+    share = "" if s.points_out == s.points_in else f", {figure(100.0 * s.points_out / s.points_in, 1)}{THIN}%"
+    yield Formula("Points shown, of " + count(s.points_in) + share, symbol("n"), f"<mn>{count(s.points_out)}</mn>")
+    yield Formula("Dimensions of the box along x, y, z", symbol("d"), row(s.dimensions.tolist()), "m")
+    yield Formula("Least coordinates", symbol("min"), row(s.minimum.tolist()), "m")
+    yield Formula("Greatest coordinates", symbol("max"), row(s.maximum.tolist()), "m")
+    yield from _selected(s)
+    yield from _process(p, s)
+    yield Note(f"Simulated, not measured: {SENSORS[p.dataset]}.")
+
+
+def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
+    if s.colored_by != p.color:
+        what = "colours" if p.color == "rgb" else "intensities"
+        yield Note(f"This cloud has no {what}; height is shown instead.", "near")
+    if p.selected is not None and s.selected is None:
+        yield Note(f"No point has the number {count(p.selected)}: only {count(s.points_out)} are shown.", "warn")
+    if p.process == "register" and s.registration is None:
+        yield Note("Nothing to register: this is one scan. Choose “Two scans of a court”.", "warn")
+    if p.process == "ground" and p.step > 0 and s.ground is None:
+        yield Note("No ground: no plane within 20° of level.", "warn")
+    if p.process == "surface" and p.step > 0 and (s.surface is None or not s.surface.triangles):
+        yield Note("No surface: the ball falls through between the points. Choose a larger one.", "warn")
+
+
+def _selected(s: CloudSolution) -> Iterator[Formula]:
+    if (chosen := s.selected) is None:
+        return
+    yield Formula(f"Selected point, number {count(chosen.index)}", symbol("p"), row(chosen.position.tolist()), "m")
+    if chosen.color is not None:
+        yield Formula("Its colour: red, green, blue", symbol("c"), row(chosen.color.tolist(), 0))
+    if chosen.normal is not None:
+        yield Formula("Its normal, towards the sensor", symbol("n"), row(chosen.normal.tolist()))
+    if chosen.intensity is not None:
+        yield Formula("Its intensity", symbol("I"), mathml(chosen.intensity))
+
+
+def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
+    if s.ground is not None:
+        g = s.ground
+        yield Formula("Normal of the ground", symbol("n"), row(g.normal.tolist(), 4))
+        yield Formula("Height of the ground over the origin", symbol("h"), mathml(-g.offset / g.normal[2]), "m")
+        yield Formula(
+            f"Points within {quantity(100.0 * g.distance, 'cm', 1)} of it", symbol("inliers"), f"<mn>{count(g.inliers)}</mn>"
+        )
+        yield Formula("Their rms distance from it", symbol("σ"), mathml(1000.0 * g.rms, 1), "mm")
+    if s.clusters is not None:
+        c = s.clusters
+        yield Note(
+            f"{count(len(c.sizes))} clusters whose points are linked by gaps of at most {quantity(c.distance, 'm', 2)}"
+            f"{', without the ground' if c.without_ground else ''}; {count(c.unclustered)} points are in groups too small."
+        )
+    if s.outliers is not None:
+        o = s.outliers
+        yield Formula("Outliers " + ("marked" if p.step == 1 else "removed"), symbol("n"), f"<mn>{count(o.removed)}</mn>")
+        yield Formula(
+            f"Most mean distance to {p.neighbors - 1} neighbours", symbol("d"), mathml(1000.0 * o.threshold, 1), "mm"
+        )
+    if s.registration is not None:
+        yield from _registration(s.registration)
+    if s.surface is not None and s.surface.triangles:
+        f = s.surface
+        yield Formula(f"Triangles, on {count(f.points)} points", symbol("n"), f"<mn>{count(f.triangles)}</mn>")
+        yield Formula("Area", symbol("A"), mathml(f.area, 2), "m²")
+        yield Formula("Volume of what is closed", symbol("V"), mathml(f.volume), "m³")
+        yield Formula(f"Radius of the ball; cells of {quantity(f.cell, 'm', 3)}", symbol("α"), mathml(f.radius), "m")
+
+
+def _registration(r: Registered) -> Iterator[Readout]:
+    ended = ", converged" if r.converged else ", not yet converged"
+    yield Note(f"Step {r.step} of {r.steps}{ended if r.step == r.steps else ''}.")
+    yield Formula(
+        f"Error of {count(r.pairs)} pairs, {SUM}", symbol("E"), mathml(r.error), "m²"
+    )
+    yield Formula("Share of points with a pair (fitness)", symbol("f"), mathml(r.fitness))
+    if r.rmse is not None:
+        yield Formula("Root mean square distance of the pairs", symbol("rms"), mathml(1000.0 * r.rmse, 1), "mm")
+    if r.off is not None:
+        yield Formula("Farthest a corner is from where it truly belongs", symbol("e"), mathml(1000.0 * r.off, 1), "mm")
+    yield Formula("Second scan onto the first", symbol("T"), mathml(r.T))
+    if len(r.unobservable):
+        yield Note(
+            f"The pairs don't fix {len(r.unobservable)} of 6 directions of motion: {', '.join(map(_motion, r.unobservable))}.",
+            "near",
+        )
+
+
+SUM = "Σ‖R pᵢ + t − qᵢ‖²"
+
+
+def _motion(direction: np.ndarray) -> str:
+    turn, move = direction[:3], direction[3:]
+    kind, axis = ("turning about", turn) if turn @ turn > move @ move else ("sliding along", move)
+    return f"{kind} ({', '.join(figure(v, 1) for v in (axis / np.linalg.norm(axis)).tolist())})"
+
+
+DONE = {
+    "ground": "the ground", "clusters": "clusters", "outliers": "outliers", "register": "registration",
+    "surface": "the surface",
+}  # fmt: skip
+
+
+def describe(p: CloudParams, s: CloudSolution) -> str:
+    """One sentence."""
+    x, y, z = (figure(v, 2) for v in s.dimensions.tolist())
+    words = f"{count(s.points_out)} of {count(len(source(p)))} points, coloured by {COLOURS[s.colored_by]}, {x} by {y} by {z} m"
+    if s.selected is not None:
+        a, b, c = (figure(v, 2) for v in s.selected.position.tolist())
+        words += f"; point {count(s.selected.index)} at {a}, {b}, {c} m"
+    if s.registration is not None:
+        words += f"; registration, step {s.registration.step} of {s.registration.steps}"
+        if s.registration.rmse is not None:
+            words += f", pairs {quantity(1000.0 * s.registration.rmse, 'mm', 1)} apart"
+    elif s.clusters is not None:
+        words += f"; {count(len(s.clusters.sizes))} clusters"
+    elif s.outliers is not None:
+        words += f"; {count(s.outliers.removed)} outliers"
+    elif s.ground is not None:
+        words += f"; ground with {count(s.ground.inliers)} points"
+    elif s.surface is not None:
+        words += f"; surface of {quantity(s.surface.area, 'm²', 2)}"
+    return words + "."
+
+
+COLOURS = {"height": "height", "intensity": "intensity", "rgb": "measured colour", "normals": "normals"}
