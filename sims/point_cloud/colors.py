@@ -16,7 +16,18 @@ RAMPS = {
     "intensity": ("#2d1a52", "#7a2080", "#c43c6b", "#ee7a45", "#f0c34e"),
 }
 """From low to high, darker to lighter, so that they are told apart without hue and on both pages."""
-CLUSTERS = ("#0b5fd7", "#d1642f", "#1a9a5f", "#b23fb5", "#8a7a00", "#0d9aa8", "#d1345b", "#5a6fe0", "#6f9a1f", "#a0522d")
+CLUSTERS = (
+    "#0b5fd7",
+    "#d1642f",
+    "#1a9a5f",
+    "#b23fb5",
+    "#8a7a00",
+    "#0d9aa8",
+    "#d1345b",
+    "#5a6fe0",
+    "#6f9a1f",
+    "#a0522d",
+)
 GREY = (140, 147, 155)
 _STEPS = 256
 

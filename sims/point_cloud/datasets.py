@@ -42,7 +42,7 @@ def street_scan() -> Cloud:
     """A street as a lidar on a car's roof sees it in one turn: rings, intensities, shadows; no colours."""
     rng = np.random.default_rng(2)
     steps = _sphere(TURN, RINGS, (-24.8, 4.0))
-    cloud = _scan(street(), (0.0, 0.0, 1.9), steps, rng, noise=0.015, reach=45.0, rings=True)
+    cloud = _scan(street(), (0.0, 0.0, 1.9), steps, rng, noise=0.015, reach=34.0, rings=True)
     return Cloud("street", cloud.points, None, cloud.intensity, cloud.ring, None, cloud.sensor, simulated=True)
 
 

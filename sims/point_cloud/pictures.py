@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from geometry import clouds
-from sims.kit.palette import RGB, Palette
+from sims.kit.palette import RGB, Palette, rgb
 from sims.kit.pane import Pane
 from sims.kit.plot import Plot, room
-from sims.kit.readout import figure, quantity
+from sims.kit.readout import THIN, figure, quantity
 from sims.point_cloud import colors
-from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.cloud import Cloud, Colors
 from sims.point_cloud.model import CloudParams, CloudSolution
 from sims.point_cloud.shown import MARKS
 from sims.point_cloud.solving import source
@@ -22,7 +23,6 @@ BINS = 48
 WIDTH, HEIGHT, LEFT, END, FLOOR, TOP = 320, 112, 10, 310, 84, 8
 UNITS = {"height": "m", "intensity": ""}
 NAMES = {"height": "Height", "intensity": "Intensity"}
-CHANNELS = ("Red", "Green", "Blue")
 
 
 def panes(p: CloudParams, s: CloudSolution, _: Palette) -> list[Pane]:
@@ -39,8 +39,8 @@ def legend(p: CloudParams, s: CloudSolution) -> Pane:
     if s.colored_by in NAMES:
         return _bar(source(p), s.colored_by)
     if s.colored_by == "normals":
-        return _key("Normals", [(rgb, f"to {word}") for rgb, word in DIRECTIONS], "each direction has its colour")
-    return _key("Measured colour", [], "as the scanner's camera saw it")
+        return _key("Normals", [(color, f"to {word}") for color, word in DIRECTIONS], "each direction has its colour")
+    return _brightness(source(p))
 
 
 DIRECTIONS: tuple[tuple[RGB, str], ...] = (
@@ -51,9 +51,9 @@ DIRECTIONS: tuple[tuple[RGB, str], ...] = (
 
 def _clusters(s: CloudSolution) -> Pane:
     assert s.clusters is not None
-    shown = [(tuple(int(c[i : i + 2], 16) for i in (1, 3, 5)), k) for k, c in enumerate(colors.CLUSTERS)]
-    items = [((r, g, b), f"{k + 1}: {n:,}".replace(",", "\u2009")) for ((r, g, b), k), n in zip(shown, s.clusters.sizes, strict=False)]
-    return _key("Clusters, by points", items[:9], "the largest first; grey: too small")
+    shown = zip(colors.CLUSTERS, s.clusters.sizes[:9], strict=False)
+    items = [(rgb(color), f"{k + 1}: {size:,}".replace(",", THIN)) for k, (color, size) in enumerate(shown)]
+    return _key("Clusters, by points", items, "the largest first; grey: too small")
 
 
 @lru_cache(maxsize=64)
@@ -62,21 +62,38 @@ def _bar(cloud: Cloud, kind: str) -> Pane:
     low, high = span(cloud, kind)
     values = np.clip(measured(cloud, kind), low, high)
     counts, _ = np.histogram(values, BINS, (low, high))
-    heights = (FLOOR - 16 - TOP) * counts / max(1, counts.max())
-    wide = (END - LEFT) / BINS
-    chosen = colors.ramp(kind)[np.linspace(0, 255, BINS).astype(int)].tolist()
-    bars = "".join(
-        f'<path style="fill:rgb({r},{g},{b})" d="M{LEFT + k * wide:.1f} {FLOOR - 16 - h:.1f}h{wide + 0.3:.1f}'
-        f'V{FLOOR - 16:.1f}h{-wide - 0.3:.1f}zM{LEFT + k * wide:.1f} {FLOOR - 12}h{wide + 0.3:.1f}v12h{-wide - 0.3:.1f}z"/>'
-        for k, ((r, g, b), h) in enumerate(zip(chosen, heights.tolist(), strict=True))
-    )
-    ticks = "".join(
-        f'<text x="{LEFT + (END - LEFT) * f:.0f}" y="{FLOOR + 18}" text-anchor="{anchor}">'
-        f"{quantity(low + (high - low) * f, UNITS[kind], 2)}</text>"
-        for f, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end"))
-    )
+    bars = _bars(counts, colors.ramp(kind)[np.linspace(0, 255, BINS).astype(int)])
+    ticks = _words(*(quantity(low + (high - low) * f, UNITS[kind], 2) for f in (0.0, 0.5, 1.0)))
     note = f"from {figure(low, 2)} to {quantity(high, UNITS[kind], 2)}"
     return _pane(NAMES[kind], note, bars + ticks, HEIGHT)
+
+
+@lru_cache(maxsize=64)
+def _brightness(cloud: Cloud) -> Pane:
+    """How many points are how bright, and the mean colour of those."""
+    assert cloud.colors is not None
+    level = np.minimum(cloud.colors.max(axis=1).astype(np.intp) * BINS // 256, BINS - 1)
+    counts = np.bincount(level, minlength=BINS)
+    means = np.stack([np.bincount(level, c, BINS) for c in cloud.colors.T.astype(float)], axis=1)
+    bars = _bars(counts, np.rint(means / np.maximum(counts, 1)[:, None]).astype(np.uint8))
+    return _pane("Measured colour", "how many points are how bright", bars + _words("dark", "", "bright"), HEIGHT)
+
+
+def _bars(counts: npt.NDArray[Any], paint: Colors) -> str:
+    """A bar for each count, over a band of its colour."""
+    heights = (FLOOR - 16 - TOP) * counts / max(1, counts.max())
+    wide = (END - LEFT) / BINS
+    return "".join(
+        f'<path style="fill:rgb({r},{g},{b})" d="M{LEFT + k * wide:.1f} {FLOOR - 16 - h:.1f}h{wide + 0.3:.1f}'
+        f'V{FLOOR - 16:.1f}h{-wide - 0.3:.1f}zM{LEFT + k * wide:.1f} {FLOOR - 12}h{wide + 0.3:.1f}v12h{-wide - 0.3:.1f}z"/>'
+        for k, ((r, g, b), h) in enumerate(zip(paint.tolist(), heights.tolist(), strict=True))
+    )
+
+
+def _words(*words: str) -> str:
+    """At the left end, in the middle and at the right end of the band."""
+    ends = zip(words, (LEFT, (LEFT + END) // 2, END), ("start", "middle", "end"), strict=True)
+    return "".join(f'<text x="{x}" y="{FLOOR + 18}" text-anchor="{anchor}">{text}</text>' for text, x, anchor in ends)
 
 
 def _key(title: str, items: list[tuple[RGB, str]], note: str = "") -> Pane:
@@ -109,9 +126,3 @@ def errors(s: CloudSolution) -> Pane:
     plot.curve([(float(k), v) for k, v in enumerate(rmses)], "")
     now = rmses[found.step]
     return plot.pane(f"{quantity(now, 'mm', 1)} at step {found.step}", (float(found.step), now))
-
-
-def heights(cloud: Cloud) -> tuple[float, float]:
-    """Least and greatest height, in metres."""
-    low, high = clouds.bounds(cloud.points)
-    return float(low[2]), float(high[2])

@@ -174,7 +174,9 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
         moved = se3.apply(steps[-1].T_target_source, source[paired])
         sides = target.normals[steps[-1].target[paired]] if method == "plane" else None
         unobservable = clouds.observability(moved, sides).unobservable()
-    return Course(tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1])
+    return Course(
+        tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1]
+    )
 
 
 def registered(cloud: Cloud, way: Course, number: int) -> Registered:

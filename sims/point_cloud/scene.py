@@ -124,7 +124,7 @@ class Box:
         self._shown = ends
         self.edges.pieces(box_edges(low, high))
         middle = 0.5 * (low + high)
-        places = (middle[0], low[1], low[2]), (high[0], middle[1], low[2]), (high[0], low[1], middle[2])
+        places = (middle[0], low[1], low[2]), (high[0], middle[1], low[2]), (low[0], low[1], middle[2])
         for axis, label, place, length in zip("xyz", self.labels, places, (high - low).tolist(), strict=True):
             label.text(f"{axis} {quantity(length, 'm', 2)}")
             label.pose(position=place)

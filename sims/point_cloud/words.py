@@ -69,7 +69,9 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         yield Formula("Normal of the ground", symbol("n"), row(g.normal.tolist(), 4))
         yield Formula("Height of the ground over the origin", symbol("h"), mathml(-g.offset / g.normal[2]), "m")
         yield Formula(
-            f"Points within {quantity(100.0 * g.distance, 'cm', 1)} of it", symbol("inliers"), f"<mn>{count(g.inliers)}</mn>"
+            f"Points within {quantity(100.0 * g.distance, 'cm', 1)} of it",
+            symbol("inliers"),
+            f"<mn>{count(g.inliers)}</mn>",
         )
         yield Formula("Their rms distance from it", symbol("σ"), mathml(1000.0 * g.rms, 1), "mm")
     if s.clusters is not None:
@@ -80,7 +82,9 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         )
     if s.outliers is not None:
         o = s.outliers
-        yield Formula("Outliers " + ("marked" if p.step == 1 else "removed"), symbol("n"), f"<mn>{count(o.removed)}</mn>")
+        yield Formula(
+            "Outliers " + ("marked" if p.step == 1 else "removed"), symbol("n"), f"<mn>{count(o.removed)}</mn>"
+        )
         yield Formula(
             f"Most mean distance to {p.neighbors - 1} neighbours", symbol("d"), mathml(1000.0 * o.threshold, 1), "mm"
         )
@@ -97,9 +101,7 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
 def _registration(r: Registered) -> Iterator[Readout]:
     ended = ", converged" if r.converged else ", not yet converged"
     yield Note(f"Step {r.step} of {r.steps}{ended if r.step == r.steps else ''}.")
-    yield Formula(
-        f"Error of {count(r.pairs)} pairs, {SUM}", symbol("E"), mathml(r.error), "m²"
-    )
+    yield Formula(f"Error of {count(r.pairs)} pairs, {SUM}", symbol("E"), mathml(r.error), "m²")
     yield Formula("Share of points with a pair (fitness)", symbol("f"), mathml(r.fitness))
     if r.rmse is not None:
         yield Formula("Root mean square distance of the pairs", symbol("rms"), mathml(1000.0 * r.rmse, 1), "mm")
