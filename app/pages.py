@@ -78,12 +78,13 @@ def _is_view(text: str) -> bool:
     return len(values) == 6 and all(math.isfinite(v) and abs(v) < 1e4 for v in values) and values[:3] != values[3:]
 
 
-def viewer(request: Request, sim: AnySim, params: Params, *, watching: bool) -> Response:
+def viewer(request: Request, sim: AnySim, params: Params, largest: int, *, watching: bool) -> Response:
     """The page of a session in a state: viser's client with our companion."""
     view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
         "slug": sim.slug, "title": sim.title, "watching": watching,
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
+        "files": None if sim.files is None else {"largest": largest},
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     client = f"{base(request)}/viser/{viser_client.fingerprint()}"

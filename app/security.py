@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -51,12 +53,19 @@ LARGEST_BODY = 64 * 1024
 
 
 class SmallBodies:
-    """Refuses a request whose body is larger than any parameters are, without reading it all."""
+    """Refuses a request whose body is larger than any parameters are, without reading it all.
 
-    def __init__(self, app: ASGIApp) -> None:
+    But for the addresses that match `files`, which take files and see for themselves how large these are.
+    """
+
+    def __init__(self, app: ASGIApp, files: str) -> None:
         self._app = app
+        self._files = re.compile(files)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http" or self._files.search(scope["path"]):
+            await self._app(scope, receive, send)
+            return
         received = 0
 
         async def receiver() -> Message:
@@ -67,4 +76,4 @@ class SmallBodies:
                 raise HTTPException(413, f"The body may have {LARGEST_BODY} bytes.")
             return message
 
-        await self._app(scope, receiver if scope["type"] == "http" else receive, send)
+        await self._app(scope, receiver, send)

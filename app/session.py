@@ -64,6 +64,9 @@ class Session:
         self.reduced_motion = False
         self.waiting = False
         """Only people who watch have come so far."""
+        self.kept: object = None
+        """What was made of the file that somebody brought; it lives as long as the session."""
+        self.kept_bytes = 0
         if sim.heavy:
             self.redraw()
 
@@ -97,6 +100,12 @@ class Session:
         changes = await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
         with suppress(ValidationError):
             self.change(changes)
+
+    def keep(self, kept: object, size: int, changes: Mapping[str, Any]) -> None:
+        """Take what was made of a file of some bytes, in place of that of the file before."""
+        self.kept, self.kept_bytes = kept, size
+        self.stop_motion()
+        self._set(self.params.moved(changes))
 
     def point(self, name: str) -> None:
         """Light up in every scene what somebody points at in a picture or table; an empty name is nothing."""
@@ -237,9 +246,15 @@ class Sessions:
         self._by_room: dict[tuple[str, str], Session] = {}
         self._pool = ThreadPoolExecutor(max_workers=2, thread_name_prefix="solve")
         self.counts: Counter[str] = Counter()
+        self.reading = ThreadPoolExecutor(max_workers=1, thread_name_prefix="read")
+        """Reads the files that learners bring, however long it takes, beside what solves."""
 
     def __len__(self) -> int:
         return len(self._by_room)
+
+    def kept_bytes(self) -> int:
+        """Bytes of all files that sessions keep."""
+        return sum(session.kept_bytes for session in self._by_room.values())
 
     def find(self, sim: Sim[Any, Any], room: str) -> Session | None:
         """The running session of a room."""
@@ -280,7 +295,8 @@ class Sessions:
                 del self._by_room[key]
 
     def close(self) -> None:
-        """End the pool."""
+        """End the pools."""
+        self.reading.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 

@@ -20,6 +20,8 @@ class Settings(BaseSettings):
     port: int = Field(8000, ge=0, le=65535, description="port to listen on")
     root_path: str = Field("", description="path prefix behind a proxy, as in /sim3")
     frame_ancestors: str = Field("*", description="sites that may embed the sims, as in a CSP frame-ancestors list")
+    cloud_dir: Path | None = Field(None, description="folder whose files sims that take files offer to everybody")
+    max_upload: int = Field(100, ge=1, le=2000, description="megabytes that a file of a learner may have")
     max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
     origins: str = Field("", description="further origins, separated by spaces, whose pages may open a websocket")
 
@@ -29,6 +31,13 @@ class Settings(BaseSettings):
         value = value.rstrip("/")
         if value and not value.startswith("/"):
             raise ValueError("must start with a slash, as in /sim3")
+        return value
+
+    @field_validator("cloud_dir")
+    @classmethod
+    def _folder(cls, value: Path | None) -> Path | None:
+        if value is not None and not value.is_dir():
+            raise ValueError("must be a folder that is there")
         return value
 
     @field_validator("frame_ancestors", "origins")

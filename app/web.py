@@ -20,6 +20,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from app import pages
 from app.bridge import Bridge
+from app.files import ADDRESS, add_files
 from app.security import Headers, SmallBodies
 from app.session import Full, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
@@ -37,6 +38,10 @@ AnySim = Sim[Any, Any]
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     """The application, bound to a running viser host."""
     sessions = Sessions(settings.max_sessions)
+    largest = settings.max_upload * 1_000_000
+    for sim in SIMS:
+        if sim.files is not None and settings.cloud_dir is not None:
+            sim.files.offer(settings.cloud_dir, largest)
     bridge = Bridge(host, sessions, settings.origins)
 
     @asynccontextmanager
@@ -52,13 +57,14 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.root_path = settings.root_path
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
-    app.add_middleware(SmallBodies)
+    app.add_middleware(SmallBodies, files=ADDRESS)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
-    _add_pages(app, sessions)
+    _add_pages(app, sessions, largest)
     _add_api(app)
     _add_sockets(app, bridge)
+    add_files(app, sessions, largest)
 
     app.mount("/swagger", StaticFiles(directory=Path(fastapi_offline.__file__).parent / "static"), name="swagger")
 
@@ -115,7 +121,7 @@ def _params(sim: AnySim, request: Request) -> Params:
     return params
 
 
-def _add_pages(app: FastAPI, sessions: Sessions) -> None:
+def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
     @app.get("/", response_class=HTMLResponse, include_in_schema=False)
     async def launcher(request: Request) -> Response:
         return pages.render(request, "launcher.html")
@@ -147,7 +153,7 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
             raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
         if known and pages.split_options(request.query_params.multi_items())[0]:
             session.change(params.model_dump(), live=False)
-        return pages.viewer(request, sim, session.params, watching=False)
+        return pages.viewer(request, sim, session.params, largest, watching=False)
 
     @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
     async def watched(request: Request, slug: str, room: str) -> Response:
@@ -155,7 +161,7 @@ def _add_pages(app: FastAPI, sessions: Sessions) -> None:
             raise HTTPException(404, "There is no such room.")
         sim = sim_or_404(slug)
         known = sessions.find(sim, room)
-        return pages.viewer(request, sim, known.params if known else sim.params(), watching=True)
+        return pages.viewer(request, sim, known.params if known else sim.params(), largest, watching=True)
 
     @app.get("/viser/{fingerprint}/{name}", include_in_schema=False)
     async def client(request: Request, fingerprint: str, name: str) -> Response:

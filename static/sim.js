@@ -330,6 +330,7 @@ new MutationObserver(() => {
     tidying = false;
     nameControls(document);
     markSliders();
+    showBringing();
     light();
     dismissSoftwareNotice();
   });
@@ -392,6 +393,61 @@ function savePicture() {
     const link = element("a", { href: canvas.toDataURL("image/png"), download: `${sim.slug}.png` });
     link.click();
     link.remove();
+  });
+}
+
+// --- Files that a learner brings: sent as they are, with how far they are; the state comes over the channel ----------
+
+const bringing = { words: "", share: null };
+
+function showBringing() {
+  const bar = document.querySelector(".s3-bring progress");
+  const words = document.querySelector("[data-s3-file-status]");
+  if (!bar || (!bringing.words && bar.hidden)) return;
+  bar.hidden = bringing.share === null;
+  if (bringing.share === 1) bar.removeAttribute("value");
+  else if (bringing.share !== null) bar.value = bringing.share;
+  if (bringing.words && words.textContent !== bringing.words) words.textContent = bringing.words;
+}
+
+function say(words, share = null) {
+  Object.assign(bringing, { words, share });
+  showBringing();
+}
+
+function bring(file) {
+  const size = `${(file.size / 1e6).toFixed(1)} MB`;
+  if (file.size > sim.files.largest) {
+    say(`⚠ “${file.name}” has ${size}; at most ${sim.files.largest / 1e6} MB are taken. Nothing has changed.`);
+    return;
+  }
+  const request = new XMLHttpRequest();
+  const failed = (words) => say(`⚠ “${file.name}”: ${words} Nothing has changed.`);
+  request.open("POST", `file?name=${encodeURIComponent(file.name)}`);
+  request.upload.onprogress = (event) => say(`Sending “${file.name}”, ${size}…`, event.loaded / event.total * 0.999);
+  request.upload.onload = () => say(`Reading “${file.name}”, ${size}…`, 1);
+  request.onerror = () => failed("The connection broke off.");
+  request.onload = () => {
+    if (request.status === 200) return say(`“${file.name}” is shown.`);
+    let words = "The server didn't take it.";
+    try { words = JSON.parse(request.responseText).detail; } catch { /* not from us */ }
+    failed(words);
+  };
+  say(`Sending “${file.name}”, ${size}…`, 0);
+  request.send(file);
+}
+
+document.addEventListener("change", (event) => {
+  if (!event.target.matches?.("[data-s3-file]") || !event.target.files.length) return;
+  bring(event.target.files[0]);
+  event.target.value = ""; // so that the same file can be brought again
+});
+
+if (sim.files && !sim.watching) {
+  document.addEventListener("dragover", (event) => event.preventDefault());
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer?.files.length) bring(event.dataTransfer.files[0]);
   });
 }
 

@@ -215,6 +215,12 @@ def choice(
     return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
+def named(pattern: str, *, title: str, description: str, allowed: str, group: str = "") -> Any:
+    """A name, at first empty, that the state's `options` offer; `allowed` says in words what matches the pattern."""
+    hints: Any = {"labels": {}, "group": group, "control": "choice", "allowed": allowed}
+    return Field("", pattern=pattern, title=title, description=description, json_schema_extra=hints)
+
+
 def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:
     """On or off; 1 or 0 in a link."""
     return Field(default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"})
@@ -407,6 +413,8 @@ def allowed_values(field: FieldInfo) -> str:
     kind = extra(field).get("control")
     if kind == "switch":
         return "1 or 0"
+    if allowed := extra(field).get("allowed"):
+        return str(allowed)
     if words := choices(field):
         return "one of: " + ", ".join(words)
     if kind == "letters":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -14,6 +15,8 @@ from sims.kit.params import Params
 from sims.kit.readout import Readout
 from sims.kit.stage import Stage
 
+DRAWN: Mapping[str, Any] = {"drawn": True}
+"""Metadata of a Solution's field that the scene alone needs: too large to go out."""
 P = TypeVar("P", bound=Params)
 S = TypeVar("S")
 P_in = TypeVar("P_in", bound=Params, contravariant=True)
@@ -68,6 +71,22 @@ class Typed(Generic[P, S]):
 
 
 @dataclass(frozen=True)
+class Files:
+    """Files that a learner may bring into a session.
+
+    `read` makes of a name, bytes and the largest number of bytes that the server takes what the session keeps as long
+    as it lives, and the changes that show it. It runs beside the event loop, and raises ValueError in words for the
+    learner. `offer` is told of the administrator's folder, where there is one, and of that number.
+    """
+
+    group: str
+    """Folder of the controls in which a file is brought."""
+    endings: tuple[str, ...]
+    read: Callable[[str, bytes, int], tuple[object, Mapping[str, Any]]]
+    offer: Callable[[Path, int], None]
+
+
+@dataclass(frozen=True)
 class View:
     """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
 
@@ -106,13 +125,11 @@ class Sim(Generic[P, S]):
     handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
     typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    files: Files | None = None
+    downloads: Mapping[str, Callable[[P], bytes]] = field(default_factory=dict)
+    """Files that can be had of a state, by name."""
     heavy: bool = False
     """Solving can take over 5 ms: it runs in the pool, beside the event loop."""
-
-
-def drawn() -> Any:
-    """A field of a Solution that the scene alone needs, and that is too large to go out."""
-    return field(repr=False, metadata={"drawn": True})
 
 
 def jsonable(value: Any) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -225,6 +225,8 @@ class Viewer:
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
                 for name in names:
                     self._controls += [self._control(params, name), *self._presets(params, name)]
+                if self.sim.files is not None and group == self.sim.files.group:
+                    gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))
                 if not group:
                     self._places = [self._typed(typed) for typed in self.sim.typed]
         with gui.add_folder("Actions"):
@@ -236,7 +238,7 @@ class Viewer:
                     for action in (action for action in self.sim.actions if action.group == group):
                         self._button(action.label, action.hint, action.name)
             self._button("Reset", "Back to the state of the link that you opened", "reset", color="gray")
-            gui.add_html(TOOLBAR)
+            gui.add_html(toolbar(self.sim.downloads))
         with gui.add_folder("Read-outs"):
             self._readouts = gui.add_html("")
 
@@ -337,10 +339,27 @@ def _unit(model: type[Params], name: str) -> str:
     return str(extra(model.model_fields[name]).get("unit", ""))
 
 
-TOOLBAR = (
-    '<div class="s3-toolbar">'
-    '<button type="button" data-s3="share">Share link</button>'
-    '<button type="button" data-s3="picture">Save picture</button>'
-    '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
-    "</div>"
-)
+def toolbar(downloads: Iterable[str] = ()) -> str:
+    """The buttons that every sim has, and links to what can be had as a file."""
+    links = "".join(
+        f'<a class="s3-button" href="result/{escape(name)}" download="{escape(name)}">Download {escape(name)}</a>'
+        for name in downloads
+    )
+    return (
+        '<div class="s3-toolbar">'
+        '<button type="button" data-s3="share">Share link</button>'
+        '<button type="button" data-s3="picture">Save picture</button>'
+        '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
+        f"{links}</div>"
+    )
+
+
+def bring(endings: Sequence[str], *, disabled: bool) -> str:
+    """Where a file is brought; the companion sends it and says how far it is."""
+    off = " disabled" if disabled else ""
+    return (
+        f'<div class="s3-bring"><label>Bring a file<input type="file" data-s3-file accept="{",".join(endings)}"{off}>'
+        '</label><progress max="1" hidden aria-label="Upload"></progress>'
+        f'<p data-s3-file-status role="status">{", ".join(e[1:].upper() for e in endings)}; it stays on this server'
+        " while the sim is open.</p></div>"
+    )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from sims.kit.sim import Action, Objective, Sim
-from sims.point_cloud import model
-from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution
+from sims.kit.sim import Action, Files, Objective, Sim
+from sims.point_cloud import library, model
+from sims.point_cloud.files import FORMATS
+from sims.point_cloud.model import OWN, VIEWS, CloudParams, CloudSolution
 from sims.point_cloud.pictures import panes
 from sims.point_cloud.scene import CloudScene
-from sims.point_cloud.solving import pick, solve
+from sims.point_cloud.solving import pick, ply, solve
 from sims.point_cloud.words import describe, readouts
 
 __all__ = ["SIM", "CloudParams", "CloudSolution", "solve"]
@@ -51,10 +52,14 @@ SIM = Sim(
         "outliers marked": {"dataset": "statue", "process": "outliers", "step": 1},
         "scans apart": {"dataset": "two-scans", "process": "register", "step": 0},
         "scans together": {"dataset": "two-scans", "process": "register", "step": 40},
-        "points to points": {"dataset": "two-scans", "process": "register", "step": 7, "method": "point", "selected": 90_000},
+        "points to points": {"dataset": "two-scans", "process": "register", "step": 7, "method": "point"},
+        "point of the moving scan": {"dataset": "two-scans", "process": "register", "step": 2, "selected": 90_000},
         "statue's surface": {"dataset": "statue", "process": "surface", "step": 2},
         "no surface": {"dataset": "statue", "process": "surface", "distance": 0.01, "voxel_size": 0.1},
+        "file that is gone": {"dataset": "file", "file": "upload-gone", "process": "surface"},
         "nothing left": {"process": "clusters", "step": 1, "voxel_size": 1.0},
     },
+    files=Files(OWN, tuple(FORMATS), library.bring, library.offer),
+    downloads={"point-cloud.ply": ply},
     heavy=True,
 )  # fmt: skip

@@ -20,6 +20,7 @@ class Cloud:
     `colors` (N, 3) are RGB 0–255, `intensity` (N,) is 0–1, `ring` (N,) the laser of a rotating lidar, `scan` (N,)
     the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from. `dropped` points of the
     file had no finite coordinates. `truth` (4, 4) brings scan 1 onto scan 0, where that is known.
+    Of points too many to show, `left_out` aren't here. `origin` (3,) was taken from coordinates that were far away.
     """
 
     name: str
@@ -32,6 +33,8 @@ class Cloud:
     dropped: int = 0
     truth: Array | None = None
     simulated: bool = False
+    left_out: int = 0
+    origin: Array | None = None
 
     def __len__(self) -> int:
         return len(self.points)

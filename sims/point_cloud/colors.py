@@ -73,9 +73,12 @@ def _table() -> Colors:
     return before_film(np.stack(np.meshgrid(level, level, level, indexing="ij"), axis=-1).reshape(-1, 3))
 
 
-def one(color: tuple[int, int, int], count: int) -> Colors:
-    """The same colour, to send, for a number of points."""
-    return np.broadcast_to(of_rgb(np.array([color], np.uint8))[0], (count, 3)).copy()
+def shaded(color: tuple[int, int, int], measured: Colors | None, count: int) -> Colors:
+    """One colour, to send, for a number of points; as bright as they were measured, so that shapes stay visible."""
+    if measured is None or not count:
+        return np.broadcast_to(of_rgb(np.array([color], np.uint8))[0], (count, 3)).copy()
+    light = measured.max(axis=1, keepdims=True) / 255.0
+    return of_rgb(np.rint(np.array(color) * (0.35 + 0.65 * light)).astype(np.uint8))
 
 
 def of_clusters(labels: npt.NDArray[np.intp]) -> Colors:

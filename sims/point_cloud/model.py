@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from geometry.arrays import Array
-from sims.kit.params import Params, choice, number, switch
-from sims.kit.sim import Step, View, drawn
+from sims.kit.params import Params, choice, named, number, switch
+from sims.kit.sim import DRAWN, Step, View
+from sims.point_cloud import library
 from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
 from sims.point_cloud.shown import Drawn
 
@@ -17,8 +18,9 @@ VIEWS = {
     "room": View((4.6, -5.8, 4.4), (0.0, 0.0, 1.15), 3.65),
     "street": View((26.0, -44.0, 34.0), (4.0, 0.0, 0.0), 33.0),
     "statue": View((2.6, -3.6, 2.2), (0.05, 0.0, 1.15), 1.6),
-    "two-scans": View((3.4, -5.6, 3.4), (-0.1, 0.0, 0.95), 2.9),
+    "two-scans": View((3.4, -5.6, 3.4), (-0.1, -0.1, 0.95), 3.3),
 }
+OWN = "Your own data"
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
 WHAT_DISTANCE_IS = {
@@ -32,13 +34,14 @@ WHAT_DISTANCE_IS = {
 
 
 class CloudParams(Params):
-    dataset: Literal["room", "street", "statue", "two-scans"] = choice(
-        "room", title="Dataset", description="Which cloud. These four were simulated: rays cast at simple bodies",
+    dataset: Literal["room", "street", "statue", "two-scans", "file"] = choice(
+        "room", title="Dataset", description="Which cloud. The first four were simulated: rays cast at simple bodies",
         labels={
             "room": "Room, colour scanner",
             "street": "Street, rotating lidar",
             "statue": "Statue, noise and outliers",
             "two-scans": "Two scans of a court",
+            "file": "From a file",
         },
     )  # fmt: skip
     color: Literal["height", "intensity", "rgb", "normals"] = choice(
@@ -90,6 +93,14 @@ class CloudParams(Params):
         description="Outliers are this many standard deviations farther from their neighbours than is usual",
     )  # fmt: skip
 
+    file: str = named(
+        r"^[^/\\\x00-\x1f]{0,120}$", title="File", description="A cloud of your own, or one of this server's folder",
+        allowed="the name of a file, without a path", group=OWN,
+    )  # fmt: skip
+
+    def options(self, name: str) -> Mapping[Any, str]:
+        return library.offered(self.file) if name == "file" else super().options(name)
+
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step" and self.process != "register":
             return 0, 2
@@ -102,6 +113,8 @@ class CloudParams(Params):
         """A process begins at its result, a registration at its start; a point that may be another is let go."""
         now = dict(changes)
         turned = {name for name, value in now.items() if value != getattr(self, name)}
+        if "file" in turned and now["file"]:
+            now.setdefault("dataset", "file")
         if "process" in turned:
             now.setdefault("step", 0 if now["process"] == "register" else 2)
         if self.selected is not None and self._renumbers(turned):
@@ -143,7 +156,9 @@ class CloudSolution:
     outliers: Outliers | None
     registration: Registered | None
     surface: Surface | None
-    drawn: Drawn = drawn()
+    trouble: str
+    """In words, why there is no cloud."""
+    drawn: Drawn = field(metadata=DRAWN)
 
 
 def play(p: CloudParams) -> Iterator[Step]:
@@ -166,4 +181,4 @@ def next_step(p: CloudParams) -> dict[str, Any]:
 
 def view_of(p: CloudParams) -> View:
     """A view that fits the cloud: they are of very different sizes."""
-    return VIEWS[p.dataset]
+    return VIEWS.get(p.dataset, VIEWS["room"])

@@ -76,17 +76,19 @@ def _brightness(cloud: Cloud) -> Pane:
     counts = np.bincount(level, minlength=BINS)
     means = np.stack([np.bincount(level, c, BINS) for c in cloud.colors.T.astype(float)], axis=1)
     bars = _bars(counts, np.rint(means / np.maximum(counts, 1)[:, None]).astype(np.uint8))
-    return _pane("Measured colour", "how many points are how bright", bars + _words("dark", "", "bright"), HEIGHT)
+    return _pane("Measured colour", "by brightness", bars + _words("dark", "", "bright"), HEIGHT)
 
 
 def _bars(counts: npt.NDArray[Any], paint: Colors) -> str:
     """A bar for each count, over a band of its colour."""
     heights = (FLOOR - 16 - TOP) * counts / max(1, counts.max())
     wide = (END - LEFT) / BINS
-    return "".join(
+    return "".join(  # no band where there is nothing that has a colour
         f'<path style="fill:rgb({r},{g},{b})" d="M{LEFT + k * wide:.1f} {FLOOR - 16 - h:.1f}h{wide + 0.3:.1f}'
-        f'V{FLOOR - 16:.1f}h{-wide - 0.3:.1f}zM{LEFT + k * wide:.1f} {FLOOR - 12}h{wide + 0.3:.1f}v12h{-wide - 0.3:.1f}z"/>'
+        f"V{FLOOR - 16:.1f}h{-wide - 0.3:.1f}z"
+        f'M{LEFT + k * wide:.1f} {FLOOR - 12}h{wide + 0.3:.1f}v12h{-wide - 0.3:.1f}z"/>'
         for k, ((r, g, b), h) in enumerate(zip(paint.tolist(), heights.tolist(), strict=True))
+        if (r, g, b) != (0, 0, 0)
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -12,7 +12,7 @@ from geometry import GeometryError, clouds, se3
 from geometry.arrays import Array
 from geometry.clouds import Indices
 from sims.kit.progress import goes_on
-from sims.kit.sim import drawn
+from sims.kit.sim import DRAWN
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.work import normals, parts, spacing
 
@@ -37,18 +37,18 @@ class Ground:
     inliers: int
     rms: float
     distance: float
-    on: Indices = drawn()
+    on: Indices = field(metadata=DRAWN)
 
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Sizes in points, the largest first, of groups with no gap wider than `distance`; `ground` says what is left out."""
+    """Sizes in points, the largest first, of groups without a gap wider than `distance` in metres."""
 
     sizes: list[int]
     distance: float
     without_ground: bool
     unclustered: int
-    labels: Indices = drawn()
+    labels: Indices = field(metadata=DRAWN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class Outliers:
 
     removed: int
     threshold: float
-    off: Indices = drawn()
+    off: Indices = field(metadata=DRAWN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class Registered:
     fitnesses: list[float]
     rmses: list[float]
     reach: float
-    links: Array = drawn()
+    links: Array = field(metadata=DRAWN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +96,8 @@ class Surface:
     radius: float
     cell: float
     points: int
-    vertices: Array = drawn()
-    faces: Indices = drawn()
+    vertices: Array = field(metadata=DRAWN)
+    faces: Indices = field(metadata=DRAWN)
 
 
 @lru_cache(maxsize=16)
@@ -206,15 +206,25 @@ def _off(cloud: Cloud, T: Array) -> float | None:
     return float(np.linalg.norm(se3.apply(T, corners) - se3.apply(cloud.truth, corners), axis=1).max())
 
 
+def _meshed(points: Array, cell: float) -> Array:
+    """Means of the cells that more than two points are in: a lone one is likelier noise."""
+    cells = clouds.voxels(points, cell)
+    return cells.points[cells.counts > 2]
+
+
 @lru_cache(maxsize=8)
-def surface(cloud: Cloud, thin: Cloud, voxel: float, distance: float) -> Surface | None:
+def surface(thin: Cloud, voxel: float, distance: float) -> Surface | None:
     """The alpha shape of one point a cell, with cells large enough that it doesn't take long; None if all is flat."""
+    if not len(thin):
+        return None
     low, high = clouds.bounds(thin.points)
     cell = max(voxel, float((high - low).max()) / 90.0)
-    points = clouds.voxels(thin.points, cell).points if cell > voxel else thin.points
+    points = _meshed(thin.points, cell) if cell > voxel else thin.points
     while len(points) > MESHED:
         cell *= 1.05 * math.sqrt(len(points) / MESHED)
-        points = clouds.voxels(thin.points, cell).points
+        points = _meshed(thin.points, cell)
+    if len(points) > 1:
+        points = points[clouds.outliers(points, 16, 1.5).keep]
     goes_on()
     radius = distance or 1.5 * cell
     try:

@@ -10,8 +10,9 @@ import trimesh
 from geometry import quaternion
 from geometry.arrays import Array
 from sims.kit.readout import THIN, figure, quantity
+from sims.kit.sim import View
 from sims.kit.stage import Cloud, Lines, Node, Stage
-from sims.point_cloud.model import CloudParams, CloudSolution, Selected, view_of
+from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
 from sims.point_cloud.shown import Layer
 
 PIXELS = 350.0
@@ -38,18 +39,18 @@ class CloudScene:
         self.mesh = Mesh(stage)
         self.links = stage.lines("/pairs", np.zeros((2, 3)), "held", width=1.5)
         self.names = [stage.label(f"/name{k}", "", anchor="bottom-center") for k in range(NAMES)]
-        self._dataset = ""
+        self._view: View | None = None
         self._links: Array | None = None
         stage.rays("/cloud")
 
     def draw(self, p: CloudParams, s: CloudSolution) -> None:
-        view = view_of(p)
-        if p.dataset != self._dataset:
-            self._turn_to(p)
+        view = s.drawn.view
+        if view is not self._view:
+            self._turn_to(view, s)
         size = p.point_size * view.radius / PIXELS
         alone = s.surface is not None and p.step == 2
         self.base.draw(s.drawn.base, s.drawn.base_normals, size, hidden=alone)
-        self.marked.draw(s.drawn.marked, s.drawn.marked_normals, MARKED * size)
+        self.marked.draw(s.drawn.marked, s.drawn.marked_normals, size if s.registration else MARKED * size)
         self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
         self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
         self.ring.draw(s.selected, view.radius)
@@ -58,14 +59,14 @@ class CloudScene:
         self._pairs(s)
         self._names(s)
 
-    def _turn_to(self, p: CloudParams) -> None:
+    def _turn_to(self, view: View, s: CloudSolution) -> None:
         """Another cloud may be far larger: look at all of it, and lay the floor for it."""
-        view = view_of(p)
-        if self._dataset:
+        if self._view is not None or view not in VIEWS.values():  # the page begins with those views
             self.stage.look(view.position, view.look_at, view.radius)
-        self._dataset = p.dataset
+        self._view = view
         self.floor.scale(round(view.radius / 2.5) or 1.0)
-        self.floor.pose(position=(0.0, 0.0, -0.01 * view.radius))
+        low = 0.0 if view in VIEWS.values() else s.minimum.item(2)
+        self.floor.pose(position=(view.look_at[0], view.look_at[1], low - 0.01 * view.radius))
 
     def _pairs(self, s: CloudSolution) -> None:
         links = None if s.registration is None else s.registration.links

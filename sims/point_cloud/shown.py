@@ -12,6 +12,7 @@ from geometry import clouds
 from geometry.arrays import Array
 from geometry.clouds import Indices
 from sims.kit.palette import LIGHT, rgb
+from sims.kit.sim import View
 from sims.point_cloud import colors, processes
 from sims.point_cloud.cloud import Cloud, Colors
 from sims.point_cloud.work import normals, painted, parts
@@ -44,7 +45,9 @@ class Drawn:
     """Corners (4, 3) of the piece of the plane that is drawn."""
     mesh: processes.Surface | None
     names: list[tuple[str, Array]]
-    """Words at places: the largest clusters, the scans."""
+    """Words at places: the largest clusters."""
+    view: View
+    """Of the whole cloud."""
 
 
 NOTHING = np.empty(0, np.intp)
@@ -58,7 +61,9 @@ def layer(cloud: Cloud, thin: Cloud, color: str, neighbors: int, kind: str, mark
     if mark == "clusters" and isinstance(result, processes.Clusters):
         paint = colors.of_clusters(result.labels[rows])
     elif mark:
-        paint = colors.one(MARKS.get(mark, colors.GREY), len(rows))
+        paint = colors.shaded(
+            MARKS.get(mark, colors.GREY), None if thin.colors is None else thin.colors[rows], len(rows)
+        )
     else:
         paint = painted(cloud, thin, color, neighbors)[rows]
     return Layer(rows, _places(thin)[rows], paint)
@@ -105,6 +110,18 @@ def patch(found: processes.Ground, low: Array, high: Array) -> Array:
     a, b, c = found.normal.tolist()
     corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
     return np.array([(x, y, -(a * x + b * y + found.offset) / c) for x, y in corners])
+
+
+@lru_cache(maxsize=16)
+def whole(cloud: Cloud) -> View:
+    """A view of all of a cloud that somebody brought."""
+    if not len(cloud):
+        return View((4.0, -5.0, 4.0), (0.0, 0.0, 0.0), 3.0)
+    low, high = clouds.bounds(cloud.points)
+    middle = 0.5 * (low + high)
+    radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-3)
+    x, y, z = (middle + radius * np.array([1.2, -1.8, 1.3])).tolist()
+    return View((x, y, z), (float(middle[0]), float(middle[1]), float(middle[2])), radius)
 
 
 @lru_cache(maxsize=16)

@@ -8,10 +8,11 @@ import numpy as np
 
 from geometry import clouds, se3
 from geometry.arrays import Array
-from sims.point_cloud import processes, shown
+from sims.point_cloud import library, processes, shown
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
-from sims.point_cloud.model import CloudParams, CloudSolution, Selected
+from sims.point_cloud.files import ply_bytes
+from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
 from sims.point_cloud.shown import NO_LINES, Drawn, Layer, layer
 from sims.point_cloud.work import colored_by, normals, spacing, thinned
 
@@ -20,7 +21,7 @@ MOST_LABELS = 7
 
 def source(p: CloudParams) -> Cloud:
     """The cloud of a state."""
-    return dataset(p.dataset)
+    return library.find(p.file) if p.dataset == "file" else dataset(p.dataset)
 
 
 @dataclass
@@ -49,6 +50,7 @@ def solve(p: CloudParams) -> CloudSolution:
         minimum=low, maximum=high, dimensions=high - low, selected=_selected(p, thin, result),
         colored_by=colored_by(cloud, p.color), ground=result.ground, clusters=result.clusters,
         outliers=result.outliers, registration=result.registration, surface=result.surface,
+        trouble=library.trouble(p.file) if p.dataset == "file" else "",
         drawn=_drawn(p, cloud, thin, result, low, high),
     )  # fmt: skip
 
@@ -117,7 +119,7 @@ def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
 def _surface(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
     result = _none(p, cloud, thin)
     if p.step > 0:
-        result.surface = processes.surface(cloud, thin, p.voxel_size, p.distance)
+        result.surface = processes.surface(thin, p.voxel_size, p.distance)
     return result
 
 
@@ -167,16 +169,32 @@ def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array
     ground = None if result.ground is None else shown.patch(result.ground, low, high)
     return Drawn(
         result.base, result.marked, result.T, base, over, ground, result.surface, result.names,
+        VIEWS[p.dataset] if p.dataset in VIEWS else shown.whole(cloud),
     )  # fmt: skip
 
 
 def pick(p: CloudParams, ray: tuple[float, ...]) -> dict[str, int | None]:
     """Select the shown point that a ray (origin, direction) points at, or none."""
+    points = shown_points(p).points
+    found = clouds.pick(points, ray[:3], ray[3:]) if len(points) else None
+    return {"selected": None if found is None else found.index}
+
+
+def shown_points(p: CloudParams) -> Cloud:
+    """The points that a state shows, in the order of their numbers, where they are shown."""
     cloud = source(p)
     thin = thinned(cloud, p.voxel_size)
     result = PROCESSES[p.process](p, cloud, thin)
-    points = result.base.points
-    if len(result.marked.rows):
-        points = np.concatenate([points, se3.apply(result.T, result.marked.points)])
-    found = clouds.pick(points, ray[:3], ray[3:]) if len(points) else None
-    return {"selected": None if found is None else found.index}
+    kept = thin.only(np.concatenate([result.base.rows, result.marked.rows]))
+    if result.registration is None:
+        return kept
+    first = len(result.base.rows)
+    moved = se3.apply(result.T, kept.points[first:])
+    return kept.with_means(np.concatenate([kept.points[:first], moved]), kept.colors, kept.intensity)
+
+
+def ply(p: CloudParams) -> bytes:
+    """The shown points as a PLY file, where the file that they came from has them."""
+    kept = shown_points(p)
+    back = kept.points if kept.origin is None else kept.points + kept.origin
+    return ply_bytes(kept.with_means(back, kept.colors, kept.intensity))

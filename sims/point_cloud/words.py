@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, symbol
+from sims.point_cloud.library import UPLOAD
 from sims.point_cloud.model import CloudParams, CloudSolution
 from sims.point_cloud.processes import Registered
 from sims.point_cloud.solving import source
@@ -27,17 +28,43 @@ def count(number: int) -> str:
 def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _warnings(p, s)
-    share = "" if s.points_out == s.points_in else f", {figure(100.0 * s.points_out / s.points_in, 1)}{THIN}%"
+    share = (
+        ""
+        if s.points_out == s.points_in or not s.points_in
+        else f", {figure(100.0 * s.points_out / s.points_in, 1)}{THIN}%"
+    )
     yield Formula("Points shown, of " + count(s.points_in) + share, symbol("n"), f"<mn>{count(s.points_out)}</mn>")
     yield Formula("Dimensions of the box along x, y, z", symbol("d"), row(s.dimensions.tolist()), "m")
     yield Formula("Least coordinates", symbol("min"), row(s.minimum.tolist()), "m")
     yield Formula("Greatest coordinates", symbol("max"), row(s.maximum.tolist()), "m")
     yield from _selected(s)
     yield from _process(p, s)
-    yield Note(f"Simulated, not measured: {SENSORS[p.dataset]}.")
+    if p.dataset in SENSORS:
+        yield Note(f"Simulated, not measured: {SENSORS[p.dataset]}.")
+    else:
+        yield from _file(p)
+
+
+def _file(p: CloudParams) -> Iterator[Readout]:
+    """What became of a file."""
+    cloud = source(p)
+    if not len(cloud):
+        return
+    yield Note(f"From the file “{cloud.name}”.")
+    if cloud.dropped:
+        yield Note(f"{count(cloud.dropped)} points without finite coordinates were left out.", "near")
+    if cloud.left_out:
+        yield Note(f"Too many for a browser: {count(cloud.left_out)} points, evenly chosen, were left out.", "near")
+    if cloud.origin is not None:
+        yield Formula("Far from its origin: add to the coordinates", symbol("o"), row(cloud.origin.tolist(), 0), "m")
+    if p.file.startswith(UPLOAD):
+        yield Note("A link can't carry your file: it works here, as long as somebody has the sim open.")
 
 
 def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
+    if s.trouble:
+        yield Note(s.trouble, "warn")
+        return
     if s.colored_by != p.color:
         what = "colours" if p.color == "rgb" else "intensities"
         yield Note(f"This cloud has no {what}; height is shown instead.", "near")
@@ -70,7 +97,7 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         yield Formula("Height of the ground over the origin", symbol("h"), mathml(-g.offset / g.normal[2]), "m")
         yield Formula(
             f"Points within {quantity(100.0 * g.distance, 'cm', 1)} of it",
-            symbol("inliers"),
+            symbol("n"),
             f"<mn>{count(g.inliers)}</mn>",
         )
         yield Formula("Their rms distance from it", symbol("σ"), mathml(1000.0 * g.rms, 1), "mm")
@@ -78,13 +105,13 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         c = s.clusters
         yield Note(
             f"{count(len(c.sizes))} clusters whose points are linked by gaps of at most {quantity(c.distance, 'm', 2)}"
-            f"{', without the ground' if c.without_ground else ''}; {count(c.unclustered)} points are in groups too small."
+            f"{', without the ground' if c.without_ground else ''};"
+            f" {count(c.unclustered)} points are in groups too small."
         )
     if s.outliers is not None:
         o = s.outliers
-        yield Formula(
-            "Outliers " + ("marked" if p.step == 1 else "removed"), symbol("n"), f"<mn>{count(o.removed)}</mn>"
-        )
+        done = "marked" if p.step == 1 else "removed"
+        yield Formula(f"Outliers {done}", symbol("n"), f"<mn>{count(o.removed)}</mn>")
         yield Formula(
             f"Most mean distance to {p.neighbors - 1} neighbours", symbol("d"), mathml(1000.0 * o.threshold, 1), "mm"
         )
@@ -109,10 +136,8 @@ def _registration(r: Registered) -> Iterator[Readout]:
         yield Formula("Farthest a corner is from where it truly belongs", symbol("e"), mathml(1000.0 * r.off, 1), "mm")
     yield Formula("Second scan onto the first", symbol("T"), mathml(r.T))
     if len(r.unobservable):
-        yield Note(
-            f"The pairs don't fix {len(r.unobservable)} of 6 directions of motion: {', '.join(map(_motion, r.unobservable))}.",
-            "near",
-        )
+        open_ways = ", ".join(map(_motion, r.unobservable))
+        yield Note(f"The pairs don't fix {len(r.unobservable)} of 6 directions of motion: {open_ways}.", "near")
 
 
 SUM = "Σ‖R pᵢ + t − qᵢ‖²"
@@ -132,8 +157,11 @@ DONE = {
 
 def describe(p: CloudParams, s: CloudSolution) -> str:
     """One sentence."""
+    if s.trouble:
+        return s.trouble
     x, y, z = (figure(v, 2) for v in s.dimensions.tolist())
-    words = f"{count(s.points_out)} of {count(len(source(p)))} points, coloured by {COLOURS[s.colored_by]}, {x} by {y} by {z} m"
+    paint = "scan" if s.registration else "cluster" if s.clusters else COLOURS[s.colored_by]
+    words = f"{count(s.points_out)} of {count(s.points_in)} points, coloured by {paint}, {x} by {y} by {z} m"
     if s.selected is not None:
         a, b, c = (figure(v, 2) for v in s.selected.position.tolist())
         words += f"; point {count(s.selected.index)} at {a}, {b}, {c} m"

@@ -70,6 +70,8 @@ def spacing(cloud: Cloud) -> float:
 @lru_cache(maxsize=32)
 def span(cloud: Cloud, kind: str) -> tuple[float, float]:
     """What the colours of height or intensity go from and to: but for the farthest half per cent at each end."""
+    if not len(cloud):
+        return 0.0, 1.0
     values = measured(cloud, kind)
     low, high = np.percentile(values, (0.5, 99.5)).tolist()
     return (low, high) if high > low else (low - 0.5, high + 0.5)
