@@ -216,9 +216,9 @@ def choice(
 
 
 def named(pattern: str, *, title: str, description: str, allowed: str, group: str = "") -> Any:
-    """A name, at first empty, that the state's `options` offer; `allowed` says in words what matches the pattern."""
+    """A name, at first absent (None), of those that the state's `options` offer; `allowed`: what the pattern matches."""
     hints: Any = {"labels": {}, "group": group, "control": "choice", "allowed": allowed}
-    return Field("", pattern=pattern, title=title, description=description, json_schema_extra=hints)
+    return Field(None, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 
 
 def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:

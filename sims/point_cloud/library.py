@@ -6,6 +6,7 @@ administrator's is known by its file's name, and read when somebody asks for it.
 
 from __future__ import annotations
 
+import re
 import secrets
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,6 +22,8 @@ from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import FORMATS, CloudFileError, read
 
 UPLOAD = "upload-"
+NAME = r'^[^/\\\x00-\x1f"<>|:*?]{1,120}$'
+"""Of a file, without a path."""
 FAR = 10_000.0
 """Metres from the origin, from which on coordinates as the browser has them (float32) would lose millimetres."""
 MOST_SHOWN = 500_000
@@ -46,25 +49,26 @@ def offer(folder: Path, largest: int) -> None:
     _largest = largest
     _folder.clear()
     kept = (path for path in sorted(folder.iterdir()) if path.suffix.lower() in FORMATS and path.is_file())
-    _folder.update({path.name: path for path in kept if len(path.name) <= 100})
+    _folder.update({path.name: path for path in kept if re.match(NAME, path.name)})
     _from_folder.cache_clear()
 
 
-def offered(file: str) -> dict[str, str]:
+def offered(file: str | None) -> dict[str | None, str]:
     """What there is to choose from in a state, with its name for people."""
-    brought = {file: f"Yours: {cloud.name}"} if (cloud := _brought.get(file)) is not None else {}
-    own = {file: "Gone"} if file and not brought and file not in _folder else brought
-    return {"": "None", **{name: name for name in _folder}, **own}
+    offers: dict[str | None, str] = {None: "None", **{name: name for name in _folder}}
+    if file and file not in _folder:
+        offers[file] = f"Yours: {_brought[file].name}" if file in _brought else "Gone"
+    return offers
 
 
-def find(file: str) -> Cloud:
+def find(file: str | None) -> Cloud:
     """The cloud of that name; `NOTHING` if there is none, or it can't be read."""
     if file in _folder:
         return _from_folder(file)[0]
-    return _brought.get(file, NOTHING)
+    return _brought.get(file or "", NOTHING)
 
 
-def trouble(file: str) -> str:
+def trouble(file: str | None) -> str:
     """In words, why there is no cloud of that name; empty if there is one."""
     if not file:
         return "No file yet: bring your own, or choose one."

@@ -93,8 +93,8 @@ class CloudParams(Params):
         description="Outliers are this many standard deviations farther from their neighbours than is usual",
     )  # fmt: skip
 
-    file: str = named(
-        r"^[^/\\\x00-\x1f]{0,120}$", title="File", description="A cloud of your own, or one of this server's folder",
+    file: str | None = named(
+        library.NAME, title="File", description="A cloud of your own, or one of this server's folder",
         allowed="the name of a file, without a path", group=OWN,
     )  # fmt: skip
 

@@ -21,6 +21,7 @@ NOWHERE = np.zeros((1, 3), np.float32)
 MARKED = 1.5
 """How much larger marked points are."""
 NAMES = 4
+ANCHORS = {"x": "top-center", "y": "top-left", "z": "center-left"}
 RING = 0.03
 """Radius of the ring round the selected point, of the view's."""
 
@@ -112,7 +113,7 @@ class Box:
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/box")
         self.edges = stage.lines("/box/edges", np.zeros((2, 3)), "ghost", width=1.5)
-        self.labels = [stage.label(f"/box/{axis}", "") for axis in "xyz"]
+        self.labels = [stage.label(f"/box/{axis}", "", anchor=anchor) for axis, anchor in ANCHORS.items()]
         self._shown: tuple[list[float], list[float]] | None = None
 
     def draw(self, low: Array, high: Array, visible: bool) -> None:

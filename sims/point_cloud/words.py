@@ -57,7 +57,7 @@ def _file(p: CloudParams) -> Iterator[Readout]:
         yield Note(f"Too many for a browser: {count(cloud.left_out)} points, evenly chosen, were left out.", "near")
     if cloud.origin is not None:
         yield Formula("Far from its origin: add to the coordinates", symbol("o"), row(cloud.origin.tolist(), 0), "m")
-    if p.file.startswith(UPLOAD):
+    if p.file and p.file.startswith(UPLOAD):
         yield Note("A link can't carry your file: it works here, as long as somebody has the sim open.")
 
 
