@@ -65,10 +65,10 @@ class GuiUpdateMessage(Incoming, tag=True):
 
 
 class ScenePointerMessage(Incoming, tag=True):
-    event_type: Text
-    ray_origin: Vec3 | None
-    ray_direction: Vec3 | None
-    screen_pos: Annotated[list[Vec2], msgspec.Meta(max_length=8)]
+    event_type: Literal["click"]
+    ray_origin: Vec3
+    ray_direction: Vec3
+    screen_pos: tuple[Vec2]
     modifier: Text | None = None
 
 

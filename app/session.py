@@ -97,9 +97,8 @@ class Session:
 
     async def _seek(self, handle: Callable[..., Mapping[str, Any]], place: tuple[float, ...]) -> None:
         """Find out in the pool what a handle's place means."""
-        changes = await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
-        with suppress(ValidationError):
-            self.change(changes)
+        with suppress(ValidationError, GeometryError):
+            self.change(await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place))
 
     def keep(self, kept: object, size: int, changes: Mapping[str, Any]) -> None:
         """Take what was made of a file of some bytes, in place of that of the file before."""

@@ -216,7 +216,7 @@ def choice(
 
 
 def named(pattern: str, *, title: str, description: str, allowed: str, group: str = "") -> Any:
-    """A name, at first absent (None), of those that the state's `options` offer; `allowed`: what the pattern matches."""
+    """A name, at first absent (None), that the state's `options` offer; `allowed` says what the pattern matches."""
     hints: Any = {"labels": {}, "group": group, "control": "choice", "allowed": allowed}
     return Field(None, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 import logging
 import time
 from collections.abc import Callable, Coroutine
@@ -16,6 +17,7 @@ from pydantic import ValidationError
 from app import motion, session
 from app.session import Full, Session, Sessions, new_key, refusal, room_of
 from sims.kit.params import Params
+from sims.kit.progress import Superseded, goes_on
 from sims.kit.sim import Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
 
@@ -111,6 +113,7 @@ def test_changes_while_a_solve_runs_replace_each_other() -> None:
 def test_a_heavy_solve_does_not_hold_up_the_loop() -> None:
     async def test() -> None:
         room = Room(0.2, heavy=True)
+        await room.drawn()
         before = time.monotonic()
         room.session.change({"size": 7})
         await asyncio.sleep(0.01)
@@ -540,3 +543,75 @@ def test_keys_cannot_be_guessed_and_make_their_rooms() -> None:
     assert room_of(key) == room_of(key)
     assert key not in room_of(key)
     assert room_of(key).isalnum()
+
+
+# ---- what takes long
+
+
+def test_a_heavy_sim_is_solved_beside_the_loop_from_the_first_state_on() -> None:
+    async def test() -> None:
+        room = Room(0.05, heavy=True, start=ToyParams(size=4))
+        assert room.session.solution is None
+        assert room.eye.seen == []
+        assert room.session.state()["text"] == ""
+        await room.drawn()
+        assert room.eye.seen == [(4.0, 8.0)]
+        assert "double 8" in room.session.state()["text"]
+
+    run(test)
+
+
+def test_a_heavy_sim_that_cannot_be_solved_at_first_can_be_later() -> None:
+    async def test() -> None:
+        room = Room(heavy=True, start=ToyParams(size=IMPOSSIBLE))
+        await room.drawn()
+        assert room.session.solution is None
+        room.session.change({"size": 2.0})
+        await room.drawn()
+        assert room.eye.seen == [(2.0, 4.0)]
+
+    run(test)
+
+
+def test_long_work_ends_when_a_newer_state_waits() -> None:
+    async def test() -> None:
+        room = Room(heavy=True)
+        await room.drawn()
+        begun, ended = asyncio.Event(), []
+        loop = asyncio.get_running_loop()
+
+        def solve(params: ToyParams) -> Any:
+            try:
+                while params.size == 5.0:
+                    loop.call_soon_threadsafe(begun.set)
+                    goes_on()
+                    time.sleep(0.001)
+            except Superseded:
+                ended.append(params.size)
+                raise
+            return SimpleNamespace(double=2.0 * params.size)
+
+        room.session.sim = dataclasses.replace(room.session.sim, solve=solve)
+        room.session.change({"size": 5.0})
+        await begun.wait()
+        room.session.change({"size": 6.0})
+        await room.drawn()
+        assert ended == [5.0]
+        assert room.eye.seen[-1] == (6.0, 12.0)
+        assert (5.0, 10.0) not in room.eye.seen
+
+    run(test)
+
+
+def test_what_a_handle_of_a_heavy_sim_means_is_found_beside_the_loop() -> None:
+    async def test() -> None:
+        room = Room(heavy=True)
+        await room.drawn()
+        room.session.drag("/grip", (7.0, 0.0, 0.0))
+        assert room.session.params != ToyParams(size=7)
+        assert room.session._seeking is not None
+        await room.session._seeking
+        await room.drawn()
+        assert room.eye.seen[-1] == (7.0, 14.0)
+
+    run(test)

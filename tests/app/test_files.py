@@ -1,0 +1,198 @@
+"""Files that learners bring and take: to whom they belong, what is refused, and that nobody else feels it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from app.session import Session, new_key, room_of
+from sims import by_slug
+from sims.point_cloud import library
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.files import ply_bytes, read
+from tests.app.conftest import Local
+from tests.server import wait_for
+
+POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
+FILE = ply_bytes(Cloud("mine", POINTS))
+
+
+@pytest.fixture(scope="module")
+def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Local]:
+    """A server that takes files of 1 MB, and has a folder of its own."""
+    folder = tmp_path_factory.mktemp("clouds")
+    (folder / "church.xyz").write_text("0 0 0\n1 2 3\n4 5 6\n7 8 1\n")
+    (folder / "broken.ply").write_bytes(b"ply\nnothing")
+    (folder / "notes.md").write_text("not a cloud")
+    (folder / "inside").mkdir()
+    (folder.parent / "secret.xyz").write_text("1 2 3\n")
+    with Local(max_upload=1, cloud_dir=folder) as local:
+        yield local
+    library._folder.clear()
+
+
+class Desk:
+    """A room on the server."""
+
+    def __init__(self, local: Local, query: str = "", slug: str = "point-cloud") -> None:
+        self.local = local
+        self.key = new_key()
+        self.path = f"/sims/{slug}/s/{room_of(self.key)}/{self.key}/"
+        assert local.http.get(f"{self.path}?{query}").status_code == 200
+        sim = by_slug(slug)
+        assert sim is not None
+        session = local.app.state.sessions.find(sim, room_of(self.key))
+        assert session is not None
+        self.session: Session = session
+
+    def bring(self, name: str, data: bytes, **headers: str) -> httpx.Response:
+        return self.local.http.post(f"{self.path}file", params={"name": name}, content=data, headers=headers)
+
+    @property
+    def params(self) -> Any:
+        return self.session.params
+
+    def solution(self) -> Any:
+        wait_for(lambda: self.session._drawing is None, "the drawing to end")
+        return self.session.solution
+
+
+def test_a_file_becomes_the_state_of_its_room_alone(local: Local) -> None:
+    mine, other = Desk(local), Desk(local)
+    assert mine.bring("mine.ply", FILE).status_code == 200
+    assert mine.params.dataset == "file"
+    solution = mine.solution()
+    assert solution.points_out == 4
+    np.testing.assert_allclose(solution.maximum, [1.0, 2.0, 3.0])
+    assert other.params.dataset == "room"
+    assert other.solution().points_out > 100_000
+    assert mine.params.file in mine.params.query()
+
+
+def test_what_is_shown_can_be_taken_home(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("mine.ply", FILE).status_code == 200
+    answer = local.http.get(f"{desk.path}result/point-cloud.ply")
+    assert answer.status_code == 200
+    assert "attachment" in answer.headers["content-disposition"]
+    np.testing.assert_array_equal(read("x.ply", answer.content, 10**6).points, POINTS)
+    assert local.http.get(f"{desk.path}result/other.ply").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "words"),
+    [
+        ("empty.ply", b"", "empty"),
+        ("cut.ply", FILE[:-5], ""),
+        ("picture.png", b"\x89PNG", "end in"),
+        ("nothing.xyz", b"nan nan nan\n", ""),
+        ("noise.las", bytes(range(256)) * 8, ""),
+    ],
+)
+def test_a_bad_file_is_refused_in_words_and_changes_nothing(local: Local, name: str, data: bytes, words: str) -> None:
+    desk = Desk(local, "voxel_size=0.1")
+    before = desk.params
+    answer = desk.bring(name, data)
+    assert answer.status_code == 422
+    assert words in answer.json()["detail"]
+    assert answer.json()["detail"][0].isupper()
+    assert desk.params == before
+    assert desk.session.kept is None
+
+
+def test_points_without_coordinates_are_counted(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("holes.xyz", b"0 0 0\nnan 1 1\n1 1 1\n2 0 1\n").status_code == 200
+    assert desk.solution().points_in == 3
+    kept = desk.session.kept
+    assert isinstance(kept, Cloud)
+    assert kept.dropped == 1
+
+
+def test_a_file_that_is_too_big_is_refused_unread(local: Local) -> None:
+    desk = Desk(local)
+    answer = desk.bring("big.xyz", b"0" * 1_000_001)
+    assert answer.status_code == 413
+    assert "MB" in answer.json()["detail"]
+
+    def without_length() -> Iterator[bytes]:
+        yield b"0 0 0\n"
+
+    answer = local.http.post(f"{desk.path}file", params={"name": "a.xyz"}, content=without_length())
+    assert answer.status_code == 411
+    assert desk.params.dataset == "room"
+
+
+def test_only_the_key_lets_files_in_and_out(local: Local) -> None:
+    desk = Desk(local)
+    room = room_of(desk.key)
+    for path in (f"/sims/point-cloud/s/{room}/{new_key()}/", f"/sims/camera/s/{room}/{desk.key}/"):
+        assert local.http.post(f"{path}file", params={"name": "a.ply"}, content=FILE).status_code == 404
+        assert local.http.get(f"{path}result/point-cloud.ply").status_code == 404
+    camera = Desk(local, slug="camera")
+    assert camera.bring("a.ply", FILE).status_code == 404
+
+
+def test_other_addresses_take_no_large_bodies(local: Local) -> None:
+    answer = local.http.post("/api/sims/point-cloud/solve", content=b"0" * 100_000)
+    assert answer.status_code == 413
+
+
+def test_files_are_kept_as_long_as_their_session(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("mine.ply", FILE).status_code == 200
+    name = desk.params.file
+    assert local.app.state.sessions.kept_bytes() >= len(FILE)
+    assert library.trouble(name) == ""
+    assert "gone" in library.trouble("upload-never-there")
+
+
+def test_the_server_keeps_no_more_than_it_can(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk(local)
+    monkeypatch.setattr(local.app.state.sessions, "kept_bytes", lambda: 10_000_000)
+    answer = desk.bring("mine.ply", FILE)
+    assert answer.status_code == 503
+    assert desk.params.dataset == "room"
+
+
+def test_the_administrators_folder_is_offered_by_name(local: Local) -> None:
+    desk = Desk(local, "dataset=file&file=church.xyz")
+    assert desk.solution().points_out == 4
+    assert set(desk.params.options("file")) == {None, "church.xyz", "broken.ply"}
+    broken = Desk(local, "dataset=file&file=broken.ply").solution()
+    assert broken.points_out == 0
+    assert "broken.ply" in broken.trouble
+
+
+@pytest.mark.parametrize("name", ["../secret.xyz", "..", "inside/x.xyz", "/etc/passwd", "..\\secret.xyz"])
+def test_no_name_leads_out_of_the_folder(local: Local, name: str) -> None:
+    answer = local.http.get("/sims/point-cloud/embed", params={"dataset": "file", "file": name})
+    assert answer.status_code in (307, 422)
+    assert not len(library.find(name))
+    assert "secret" not in library.offered(name).values()
+
+
+def test_reading_doesnt_hold_up_the_loop(local: Local) -> None:
+    """While a file is read, the event loop goes on answering."""
+    desk = Desk(local)
+    text = "\n".join(f"{k} {k % 7} {k % 11}" for k in range(60_000)).encode()
+
+    async def both() -> list[httpx.Response]:
+        async with httpx.AsyncClient(base_url=local.url, trust_env=False, timeout=60) as http:
+            coming = asyncio.create_task(
+                http.post(f"{desk.path}file", params={"name": "long.xyz"}, content=text[:900_000])
+            )
+            answers = []
+            while not coming.done():
+                answers.append(await http.get("/healthz"))
+            return [await coming, *answers]
+
+    brought, *health = asyncio.run(both())
+    assert brought.status_code == 200
+    assert health
+    assert all(answer.status_code == 200 for answer in health)

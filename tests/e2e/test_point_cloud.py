@@ -1,0 +1,117 @@
+"""point-cloud, from the hand on a control to the points on the screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import ViewportSize
+
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.files import ply_bytes, read
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner
+from tests.e2e.picture import Picture
+
+SMALL: ViewportSize = {"width": 720, "height": 520}
+RED_AND_BLUE = np.array([(255, 0, 0), (0, 0, 255)], np.uint8)
+
+
+def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
+    """State, address, solution, read-outs and scene come to say the same; the solution."""
+
+    def said() -> dict[str, Any]:
+        solution = learner.solution(**expected)
+        drawn = sum(len(learner.scene.points(f"/{layer}/points")) for layer in layers(learner))
+        assert drawn == solution["points_out"]
+        assert learner.reads("d", solution["dimensions"])
+        return solution
+
+    return learner.until(said)
+
+
+def layers(learner: Learner) -> list[str]:
+    return [name for name in ("cloud", "marked") if learner.scene.visible(f"/{name}/points")]
+
+
+def test_voxels_thin_the_cloud_and_zero_brings_it_back(classroom: Classroom) -> None:
+    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    few = agree(learner, voxel_size=0.5)
+    assert few["points_out"] < 1_000
+    learner.press_keys("voxel_size", "ArrowLeft", "ArrowLeft")
+    more = agree(learner, voxel_size=0.49)
+    assert more["points_out"] != few["points_out"]
+    learner.choose("color", "height")
+    learner.until(lambda: learner.params["color"] == "height")
+    learner.until(lambda: "Height" in learner.scene.html("s3-pane"))
+    learner.type("voxel_size", "0")
+    assert agree(learner, voxel_size=0)["points_out"] == few["points_in"]
+
+
+def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
+    learner = classroom.open("point-cloud/embed?voxel_size=0.3&point_size=8&show_box=0", size=SMALL)
+    agree(learner)
+    points = learner.scene.points("/cloud/points")
+    aim = points[np.argmin(np.linalg.norm(points - [0.6, -1.6, 0.0], axis=1))]
+    x, y = Picture(learner).pixel(aim)
+    learner.page.mouse.click(x, y)
+    chosen = learner.until(lambda: learner.solved()["selected"])
+    np.testing.assert_allclose(chosen["position"], aim, atol=0.35)
+    learner.until(
+        lambda: np.testing.assert_allclose(learner.scene.world_pose("/selected")[:3, 3], chosen["position"], atol=1e-6)
+    )
+    assert learner.reads("p", chosen["position"])
+    learner.type("selected", "-1")
+    learner.sees(selected=None)
+
+
+def test_a_registration_is_stepped(classroom: Classroom) -> None:
+    learner = classroom.open("point-cloud/embed?dataset=two-scans&voxel_size=0.1&process=register&step=0", size=SMALL)
+    before = agree(learner, step=0)["registration"]
+    learner.press("Next step")
+    learner.press("Next step")
+    after = agree(learner, step=2)["registration"]
+    assert after["rmse"] < before["rmse"]
+    learner.until(lambda: np.testing.assert_allclose(learner.scene.world_pose("/marked"), after["T"], atol=1e-6))
+    assert learner.reads("T", after["T"])
+    assert "Error of the pairs" in learner.scene.html("s3-pane")
+
+
+def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_path: Path) -> None:
+    learner = classroom.open("point-cloud/embed", size=SMALL)
+    other = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    points = np.array([[0.0, 0.0, 0.0], [2.0, 1.0, 0.5]])
+    path = tmp_path / "my scan.ply"
+    path.write_bytes(ply_bytes(Cloud("", points, RED_AND_BLUE)))
+    learner.frame.get_by_role("button", name="Your own data").click()
+    learner.frame.get_by_label("Bring a file").set_input_files(path)
+    solution = learner.until(lambda: agree_on_file(learner))
+    assert solution["points_in"] == 2
+    np.testing.assert_allclose(learner.scene.points("/cloud/points"), points, atol=1e-6)
+    assert "my scan.ply" in learner.scene.html("s3-readouts")
+    with learner.page.expect_download() as download:
+        learner.frame.get_by_role("link", name="Download").click()
+    np.testing.assert_array_equal(read("a.ply", download.value.path().read_bytes(), 10**6).points, points)
+    assert other.params["dataset"] == "room"
+
+    broken = tmp_path / "broken.ply"
+    broken.write_bytes(b"ply\nformat nothing")
+    learner.witness.expect("422")
+    learner.frame.get_by_label("Bring a file").set_input_files(broken)
+    status = learner.frame.locator("[data-s3-file-status]")
+    learner.until(lambda: "Nothing has changed" in (status.text_content() or ""))
+    assert learner.solved()["points_in"] == 2
+
+
+def agree_on_file(learner: Learner) -> dict[str, Any]:
+    assert learner.params["dataset"] == "file"
+    return learner.solved()
+
+
+@pytest.mark.parametrize("query", ["dataset=file&file=upload-of-yesterday"])
+def test_a_file_that_is_gone_is_said_in_words(classroom: Classroom, query: str) -> None:
+    learner = classroom.open(f"point-cloud/embed?{query}", size=SMALL)
+    learner.until(lambda: "gone" in learner.scene.html("s3-readouts"))
+    assert not layers(learner)
