@@ -246,7 +246,7 @@ class Stage:
     def rays(self, name: str) -> None:
         """Have the session hear under `name` of each click into the scene, as a ray: origin, then unit direction."""
 
-        @self.scene.on_click()
+        @self.scene.on_click()  # type: ignore[arg-type]
         async def _(event: Any) -> None:
             self._point(name, (*event.ray_origin, *event.ray_direction))
 
@@ -354,7 +354,7 @@ class Stage:
         )  # fmt: skip
         return Solid(handle)
 
-    def cloud(self, name: str, points: npt.NDArray[np.float64], role: str, *, size: float = 0.01) -> Cloud:
+    def cloud(self, name: str, points: npt.NDArray[Any], role: str, *, size: float = 0.01) -> Cloud:
         """Many small dots of one colour, sent as float32."""
         handle = self.scene.add_point_cloud(
             name, points=points.astype(np.float32), colors=self.palette.surface(role), point_size=size,

@@ -38,7 +38,7 @@ def ramp(kind: str) -> Colors:
     stops = np.array([rgb(text) for text in RAMPS[kind]], dtype=float)
     at = np.linspace(0.0, len(stops) - 1.0, _STEPS)
     columns = [np.interp(at, np.arange(len(stops)), column) for column in stops.T]
-    return np.rint(np.stack(columns, axis=1)).astype(np.uint8)
+    return np.asarray(np.rint(np.stack(columns, axis=1)).astype(np.uint8))
 
 
 @cache
@@ -50,7 +50,7 @@ def of_values(values: Array, span: tuple[float, float], kind: str) -> Colors:
     """Colours to send (N, 3) for numbers (N,); beyond the span they stay at its ends."""
     low, high = span
     place = np.clip((values - low) * ((_STEPS - 1) / (high - low)), 0.0, _STEPS - 1.0)
-    return _sent_ramp(kind)[np.rint(place).astype(np.intp)]
+    return np.asarray(_sent_ramp(kind)[np.rint(place).astype(np.intp)])
 
 
 def of_directions(normals: Array) -> Colors:
@@ -63,7 +63,7 @@ def of_directions(normals: Array) -> Colors:
 def of_rgb(colors: Colors) -> Colors:
     """Colours to send (N, 3) so that the browser shows these; to 1 part in 64, of which each is worked out once."""
     key = colors.astype(np.int64) >> 2
-    return _table()[(key[:, 0] << 12) | (key[:, 1] << 6) | key[:, 2]]
+    return np.asarray(_table()[(key[:, 0] << 12) | (key[:, 1] << 6) | key[:, 2]])
 
 
 @cache

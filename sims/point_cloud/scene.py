@@ -136,7 +136,7 @@ def box_edges(low: Array, high: Array) -> Array:
     """The twelve edges (12, 2, 3) of a box."""
     corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
     pairs = [(k, k | 1 << axis) for k in range(8) for axis in range(3) if not k >> axis & 1]
-    return corners[np.array(pairs)]
+    return np.asarray(corners[np.array(pairs)])
 
 
 class Ring:

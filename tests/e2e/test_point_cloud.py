@@ -55,9 +55,10 @@ def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
     agree(learner)
     points = learner.scene.points("/cloud/points")
     aim = points[np.argmin(np.linalg.norm(points - [0.6, -1.6, 0.0], axis=1))]
-    x, y = Picture(learner).pixel(aim)
+    x, y = Picture(learner).place(aim)
     learner.page.mouse.click(x, y)
-    chosen = learner.until(lambda: learner.solved()["selected"])
+    learner.until(lambda: learner.params["selected"] is not None)
+    chosen = learner.solved()["selected"]
     np.testing.assert_allclose(chosen["position"], aim, atol=0.35)
     learner.until(
         lambda: np.testing.assert_allclose(learner.scene.world_pose("/selected")[:3, 3], chosen["position"], atol=1e-6)

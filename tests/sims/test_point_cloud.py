@@ -13,7 +13,7 @@ from sims.kit.palette import before_film, before_tone_mapping
 from sims.point_cloud import SIM, CloudParams, processes, solve, work
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.files import read
-from sims.point_cloud.model import VIEWS
+from sims.point_cloud.model import VIEWS, play
 from sims.point_cloud.solving import pick, ply, shown_points
 from tests.server import Rig
 
@@ -179,6 +179,7 @@ def test_a_ray_picks_the_nearest_point_it_meets(rig: Rig) -> None:
         }
     )
     rig.settle()
+    assert isinstance(rig.session.params, CloudParams)
     chosen = rig.session.params.selected
     assert chosen is not None
     assert np.linalg.norm(points[chosen] - target) < 0.1
@@ -271,7 +272,7 @@ def test_the_statue_has_a_surface() -> None:
 
 
 def test_play_ends_at_the_last_step() -> None:
-    steps = list(SIM.actions[0].run(CloudParams(dataset="two-scans", process="register")))
+    steps = list(play(CloudParams(dataset="two-scans", process="register")))
     assert steps[0].changes == {"step": 0}
     assert steps[-1].changes == {"step": 40}
 
