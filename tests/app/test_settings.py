@@ -36,6 +36,7 @@ def test_defaults_are_those_of_the_contract() -> None:
         ("SIM3_ROOT_PATH", "/", "root_path", ""),
         ("SIM3_FRAME_ANCESTORS", "'self' https://school.example", "frame_ancestors", "'self' https://school.example"),
         ("SIM3_MAX_SESSIONS", "3", "max_sessions", 3),
+        ("SIM3_MAX_UPLOAD", "20", "max_upload", 20),
     ],
 )  # fmt: skip
 def test_environment_is_read(monkeypatch: pytest.MonkeyPatch, name: str, text: str, field: str, value: object) -> None:
@@ -50,6 +51,8 @@ WRONG = [
     ("SIM3_ROOT_PATH", "sim3"),
     ("SIM3_MAX_SESSIONS", "0"),
     ("SIM3_MAX_SESSIONS", "1.5"),
+    ("SIM3_MAX_UPLOAD", "0"),
+    ("SIM3_CLOUD_DIR", "/no/such/folder"),
     ("SIM3_FRAME_ANCESTORS", "https://a.example; script-src *"),
     ("SIM3_FRAME_ANCESTORS", "https://a.example\r\nx-evil: 1"),
     ("SIM3_ORIGINS", "https://a.example,https://b.example"),

@@ -81,7 +81,7 @@ def test_a_registration_is_stepped(classroom: Classroom) -> None:
 
 
 def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_path: Path) -> None:
-    learner = classroom.open("point-cloud/embed", size=SMALL)
+    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
     other = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
     points = np.array([[0.0, 0.0, 0.0], [2.0, 1.0, 0.5]])
     path = tmp_path / "my scan.ply"
