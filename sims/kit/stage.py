@@ -82,24 +82,31 @@ class Solid(Node):
 class Cloud(Node):
     """Many dots, of one colour or each of its own."""
 
+    _shown: npt.NDArray[np.float32] | None = None
+    _colors: npt.NDArray[np.uint8] | None = None
+    _size: float | None = None
+
     def points(self, points: npt.NDArray[np.float64]) -> None:
         """Move the dots to places of shape (n, 3)."""
         set_property(self.handle, "points", points.astype(np.float32))
 
     def draw(self, points: npt.NDArray[np.float32], colors: npt.NDArray[np.uint8]) -> None:
         """Dots (n, 3) and their colours (n, 3), as `palette.before_film` makes them; both are kept, not copied."""
-        if points is not self.handle._impl.props.points:
+        if points is not self._shown:
+            self._shown = points
             set_property(self.handle, "points", points)
         self.paint(colors)
 
     def paint(self, colors: npt.NDArray[np.uint8]) -> None:
         """Colours (n, 3) of the dots."""
-        if colors is not self.handle._impl.props.colors:
+        if colors is not self._colors:
+            self._colors = colors
             set_property(self.handle, "colors", colors)
 
     def size(self, metres: float) -> None:
         """Diameter of each dot."""
-        if metres != self.handle._impl.props.point_size:
+        if metres != self._size:
+            self._size = metres
             set_property(self.handle, "point_size", metres)
 
 
