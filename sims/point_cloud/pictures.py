@@ -53,7 +53,7 @@ def _clusters(s: CloudSolution) -> Pane:
     assert s.clusters is not None
     shown = zip(colors.CLUSTERS, s.clusters.sizes[:9], strict=False)
     items = [(rgb(color), f"{k + 1}: {size:,}".replace(",", THIN)) for k, (color, size) in enumerate(shown)]
-    return _key("Clusters, by points", items, "the largest first; grey: too small")
+    return _key("Clusters, by points", items, "grey: too small")
 
 
 @lru_cache(maxsize=64)

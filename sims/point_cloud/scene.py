@@ -22,7 +22,7 @@ MARKED = 1.5
 """How much larger marked points are."""
 NAMES = 4
 ANCHORS = {"x": "top-center", "y": "top-left", "z": "center-left"}
-RING = 0.03
+RING = 0.04
 """Radius of the ring round the selected point, of the view's."""
 
 
@@ -144,7 +144,7 @@ class Ring:
 
     def __init__(self, stage: Stage) -> None:
         self.node: Node = stage.group("/selected")
-        ring = trimesh.creation.torus(major_radius=1.0, minor_radius=0.09, major_sections=48, minor_sections=8)
+        ring = trimesh.creation.torus(major_radius=1.0, minor_radius=0.13, major_sections=48, minor_sections=8)
         turns = np.eye(4), trimesh.transformations.rotation_matrix(math.pi / 2.0, [1, 0, 0])
         self.rings = [
             stage.mesh(f"/selected/ring{k}", ring.copy().apply_transform(turn), "held") for k, turn in enumerate(turns)

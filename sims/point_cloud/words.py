@@ -65,7 +65,7 @@ def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
     if s.trouble:
         yield Note(s.trouble, "warn")
         return
-    if s.colored_by != p.color:
+    if s.colored_by != p.color and s.clusters is None and s.registration is None:
         what = "colours" if p.color == "rgb" else "intensities"
         yield Note(f"This cloud has no {what}; height is shown instead.", "near")
     if p.selected is not None and s.selected is None:
