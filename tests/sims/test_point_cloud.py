@@ -159,6 +159,18 @@ def test_a_change_of_size_sends_no_points(rig: Rig) -> None:
     assert rig.model.node("/cloud/points").props["point_size"] == pytest.approx(6.0 * VIEWS["room"].radius / 350.0)
 
 
+def test_another_cloud_is_looked_at_from_where_all_of_it_is_seen(rig: Rig) -> None:
+    show(rig)
+    show(rig, dataset="street")
+    view = VIEWS["street"]
+    position = np.array(rig.model.latest["SetCameraPositionMessage"]["position"])
+    away = np.linalg.norm(position - view.look_at)
+    assert away * np.sin(0.35) == pytest.approx(view.radius, rel=0.1)
+    np.testing.assert_allclose(rig.model.latest["SetCameraLookAtMessage"]["look_at"], view.look_at)
+    show(rig, dataset="street", color="height")
+    np.testing.assert_array_equal(rig.model.latest["SetCameraPositionMessage"]["position"], position)
+
+
 # ---- picking
 
 
