@@ -358,7 +358,8 @@ def bring(endings: Sequence[str], *, disabled: bool) -> str:
     """Where a file is brought; the companion sends it and says how far it is."""
     off = " disabled" if disabled else ""
     return (
-        f'<div class="s3-bring"><label>Bring a file<input type="file" aria-label="Bring a file" data-s3-file accept="{",".join(endings)}"{off}>'
+        '<div class="s3-bring"><label>Bring a file<input type="file" aria-label="Bring a file" data-s3-file'
+        f' accept="{",".join(endings)}"{off}>'
         '</label><progress max="1" hidden aria-label="Upload"></progress>'
         f'<p data-s3-file-status role="status">{", ".join(e[1:].upper() for e in endings)}; it stays on this server'
         " while the sim is open.</p></div>"

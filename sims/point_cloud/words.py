@@ -161,7 +161,8 @@ def describe(p: CloudParams, s: CloudSolution) -> str:
         return s.trouble
     x, y, z = (figure(v, 2) for v in s.dimensions.tolist())
     paint = "scan" if s.registration else "cluster" if s.clusters else COLOURS[s.colored_by]
-    words = f"{count(s.points_out)} of {count(s.points_in)} points, coloured by {paint}, of size {figure(p.point_size, 1)}, {x} by {y} by {z} m"
+    words = f"{count(s.points_out)} of {count(s.points_in)} points, coloured by {paint}, of size"
+    words += f" {figure(p.point_size, 1)}, {x} by {y} by {z} m"
     if s.selected is not None:
         a, b, c = (figure(v, 2) for v in s.selected.position.tolist())
         words += f"; point {count(s.selected.index)} at {a}, {b}, {c} m"
