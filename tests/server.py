@@ -358,6 +358,8 @@ class Rig:
     async def _drawn(self) -> None:
         for _ in range(20):  # turns of the loop: what browsers sent goes through viser's tasks first
             await asyncio.sleep(0)
+        if (seeking := self.session._seeking) is not None:
+            await asyncio.wait([seeking], timeout=PATIENCE)
         while (drawing := self.session._drawing) is not None:
             await asyncio.wait([drawing], timeout=PATIENCE)
 
