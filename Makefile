@@ -14,6 +14,9 @@ PYTHON ?= $(shell for python in python3.13 python3.12 python3.11 python3 python;
 	if $$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; \
 	then echo $$python; break; fi; done)
 
+# pytest ends with 5 where ARGS choose none of its tests; without ARGS that is a failure.
+NONE_CHOSEN = test $$? -eq 5 -a -n "$(strip $(ARGS))"
+
 .PHONY: help run test check bench shots lock clean
 .DELETE_ON_ERROR:
 
@@ -32,8 +35,10 @@ run: $(VENV)/run.stamp
 
 test: $(VENV)/test.stamp
 	@$(BIN) -m tests.browser --ensure
-	@echo "Running the tests"
-	@$(BIN) -m pytest $(ARGS)
+	@echo "Running the tests without a browser"
+	@$(BIN) -m pytest -m "not e2e" --numprocesses auto $(ARGS) || $(NONE_CHOSEN)
+	@echo "Running the tests in a browser"
+	@$(BIN) -m pytest -m e2e $(ARGS) || $(NONE_CHOSEN)
 
 check: $(VENV)/test.stamp
 	@echo "Checking lint, format, types and import direction"

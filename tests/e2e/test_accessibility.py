@@ -60,10 +60,9 @@ def walk(frame: Frame, page: Page) -> list[dict[str, Any]]:
 
 def unfold(frame: Frame) -> None:
     """Open every folder of the panel by keyboard."""
-    while (heads := frame.locator('[role=button][aria-expanded="false"]')).count():
-        head = heads.first
+    while (head := frame.query_selector('[role=button][aria-expanded="false"]')) is not None:
         head.press("Enter")
-        frame.wait_for_function("(head) => head.ariaExpanded === 'true'", arg=head.element_handle())
+        frame.wait_for_function("(head) => head.ariaExpanded === 'true' || !head.isConnected", arg=head)
     frame.evaluate("document.body.tabIndex = -1, document.body.focus(), document.body.removeAttribute('tabindex')")
 
 
