@@ -127,6 +127,7 @@ def test_gimbal_lock_is_said_and_shown(classroom: Classroom) -> None:
     learner.type("pitch", "100")  # over the slider's end
     agree(learner, pitch=90)
     assert learner.control("textbox", "pitch").input_value() == "90"
-    learner.type("pitch", "not a number")
+    learner.control("textbox", "pitch").fill("not a number")
+    learner.control("textbox", "pitch").press("Enter")
     learner.type("yaw", "41")
     agree(learner, yaw=41, pitch=90)
