@@ -223,7 +223,6 @@ class Browser:
         assert arrived.wait(PATIENCE), "viser didn't take the connection"
         self.client = clients[0]
         self.viewer = host.call(lambda: self._show(look))
-        self.settle()
 
     def _show(self, look: Look) -> Viewer:
         session = self._session
@@ -335,9 +334,10 @@ class Rig:
         return self.browser.model
 
     def join(self, look: Look | None = None) -> Browser:
-        """Another browser looks at the session."""
+        """Another browser looks at the session, and shows its newest state."""
         browser = Browser(self.host, self.session, look or Look())
         self.browsers.append(browser)
+        self.settle()
         return browser
 
     def change(self, **changes: Any) -> None:
