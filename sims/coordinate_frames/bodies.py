@@ -9,6 +9,8 @@ import numpy as np
 import trimesh
 from trimesh.creation import capsule, cylinder
 
+from sims.kit.bodies import joined, moved
+
 Corners = Sequence[tuple[float, float, float]]
 CURL = (40.0, 30.0, 20.0)
 """Degrees that the three joints of a finger bend when it has swept from X to Y."""
@@ -27,12 +29,6 @@ def _hull(corners: Corners) -> trimesh.Trimesh:
 def _tapered(outline: Sequence[tuple[float, float, float]]) -> trimesh.Trimesh:
     """A body of corners (x, half-width, z), the same at its left and right."""
     return _hull([(x, side * y, z) for x, y, z in outline for side in (-1.0, 1.0)])
-
-
-def _joined(parts: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
-    whole = trimesh.util.concatenate(list(parts))
-    assert isinstance(whole, trimesh.Trimesh)
-    return whole
 
 
 @lru_cache(maxsize=1)
@@ -59,18 +55,17 @@ def car() -> dict[str, trimesh.Trimesh]:
         for y in (-0.24, 0.24)
     ]  # fmt: skip
     return {
-        "body": _joined([lower, roof, pillar]),
+        "body": joined([lower, roof, pillar]),
         "glass": glass,
-        "tyres": _joined(tyres),
-        "trim": _joined([*hubs, *lamps]),
+        "tyres": joined(tyres),
+        "trim": joined([*hubs, *lamps]),
     }
 
 
 def _wheel(centre: tuple[float, float, float], radius: float, width: float) -> trimesh.Trimesh:
     wheel: trimesh.Trimesh = cylinder(radius=radius, height=width, sections=24)
     wheel.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
-    wheel.apply_translation(centre)
-    return wheel
+    return moved(wheel, centre)
 
 
 @lru_cache(maxsize=2)
@@ -81,7 +76,7 @@ def hand(*, left: bool) -> dict[str, trimesh.Trimesh]:
     The left hand is the right one in a mirror that turns Z round.
     """
     low = -3.6 * PITCH
-    palm = _joined(
+    palm = joined(
         [
             _rounded([(-0.37, 0.0, -0.04), (0.0, 0.0, -0.03), (0.0, 0.0, low), (-0.35, 0.0, low + 0.04)], 0.065),
             _rounded([(x, 0.0, z) for x in (-0.32, -0.55) for z in (-0.1, low + 0.1)], 0.052),
@@ -92,9 +87,9 @@ def hand(*, left: bool) -> dict[str, trimesh.Trimesh]:
     parts = {
         "palm": palm,
         "thumb": _rounded([(-0.23, 0.07, 0.08), (-0.22, 0.07, 0.31)], 0.048),
-        "near": _joined([_finger(z, SEGMENTS[0]) for z, _ in places]),
-        "middle": _joined([_finger(z, SEGMENTS[1]) for z, _ in places]),
-        "far": _joined([_finger(z, length) for z, length in places]),
+        "near": joined([_finger(z, SEGMENTS[0]) for z, _ in places]),
+        "middle": joined([_finger(z, SEGMENTS[1]) for z, _ in places]),
+        "far": joined([_finger(z, length) for z, length in places]),
     }
     return {name: _mirrored(part) if left else part for name, part in parts.items()}
 
@@ -108,8 +103,7 @@ def _rounded(corners: Corners, radius: float) -> trimesh.Trimesh:
 def _finger(z: float, length: float) -> trimesh.Trimesh:
     part: trimesh.Trimesh = capsule(height=length, radius=0.04, count=[10, 8])
     part.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
-    part.apply_translation((length / 2, 0.0, z))
-    return part
+    return moved(part, (length / 2, 0.0, z))
 
 
 def _mirrored(part: trimesh.Trimesh) -> trimesh.Trimesh:
@@ -119,7 +113,6 @@ def _mirrored(part: trimesh.Trimesh) -> trimesh.Trimesh:
 @lru_cache(maxsize=1)
 def arrow_head() -> trimesh.Trimesh:
     """The head of an arrow that ends at the origin and points along +Y."""
-    head: trimesh.Trimesh = trimesh.creation.cone(radius=0.05, height=0.13, sections=24)
-    head.apply_translation((0.0, 0.0, -0.13))
+    head: trimesh.Trimesh = moved(trimesh.creation.cone(radius=0.05, height=0.13, sections=24), (0.0, 0.0, -0.13))
     head.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, (1, 0, 0)))
     return head

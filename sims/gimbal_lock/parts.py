@@ -11,6 +11,7 @@ import numpy as np
 import trimesh
 
 from geometry.arrays import Array
+from sims.kit.bodies import joined
 
 Profile = Sequence[tuple[float, float]]
 FULL = (0.0, 2.0 * math.pi)
@@ -103,7 +104,7 @@ def stripe(of: Ring) -> trimesh.Trimesh:
         spans = [(k * FULL[1] / count - length / 2, k * FULL[1] / count + length / 2) for k in range(count)]
     flat = lathe(bar(of.radius, 0.3 * DEPTH, WIDTH + 0.006, 0.0), spans)
     round_ = lathe(bar(of.radius, DEPTH + 0.006, 0.22 * WIDTH, 0.0), spans)
-    return _joined([flat, round_]).apply_transform(_PLANE[of.letter])
+    return joined([flat, round_]).apply_transform(_PLANE[of.letter])
 
 
 def pivots(of: Ring) -> trimesh.Trimesh:
@@ -115,9 +116,9 @@ def pivots(of: Ring) -> trimesh.Trimesh:
         rod(0.046, of.radius + DEPTH / 2, holder - DEPTH / 2),
         rod(0.06, outside, outside + 0.045),
     ]
-    one = _joined(parts)
+    one = joined(parts)
     other = one.copy().apply_transform(trimesh.transformations.rotation_matrix(math.pi, (1, 0, 0)))
-    return _joined([one, other]).apply_transform(_ALONG[of.letter])
+    return joined([one, other]).apply_transform(_ALONG[of.letter])
 
 
 def stand() -> trimesh.Trimesh:
@@ -127,15 +128,9 @@ def stand() -> trimesh.Trimesh:
     bearings = [rod(0.1, at - DEPTH / 2 - 0.004, at + DEPTH / 2 + 0.004) for at in (-YOKE, YOKE)]
     column = rod(0.06, FLOOR, -YOKE)
     foot = lathe([(0.0, FLOOR), (0.62, FLOOR), (0.62, FLOOR + 0.03), (0.1, FLOOR + 0.1), (0.0, FLOOR + 0.1)])
-    return _joined([arm, *bearings, column, foot])
+    return joined([arm, *bearings, column, foot])
 
 
 def mount(scale: float) -> trimesh.Trimesh:
     """What holds an aircraft of that scale in the inner ring: a strut from the ring to its belly."""
     return rod(0.022, -INNER.radius + DEPTH / 2, -0.1 * scale)
-
-
-def _joined(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
-    whole = trimesh.util.concatenate(parts)
-    assert isinstance(whole, trimesh.Trimesh)
-    return whole

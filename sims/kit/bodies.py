@@ -9,12 +9,14 @@ import trimesh
 from trimesh.creation import box, cone, cylinder, icosphere
 
 
-def _moved(mesh: trimesh.Trimesh, offset: tuple[float, float, float]) -> trimesh.Trimesh:
+def moved(mesh: trimesh.Trimesh, offset: tuple[float, float, float]) -> trimesh.Trimesh:
+    """Move a body, which is also the answer."""
     mesh.apply_translation(offset)
     return mesh
 
 
-def _joined(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+def joined(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    """Several bodies as one."""
     whole = trimesh.util.concatenate(parts)
     assert isinstance(whole, trimesh.Trimesh)
     return whole
@@ -34,15 +36,15 @@ def aircraft() -> dict[str, trimesh.Trimesh]:
     fuselage = icosphere(subdivisions=3).apply_scale((0.86, 0.13, 0.13))
     nose = cone(radius=0.085, height=0.3, sections=24)
     nose.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
-    _moved(nose, (0.68, 0.0, 0.0))
-    canopy = _moved(icosphere(subdivisions=2).apply_scale((0.2, 0.075, 0.09)), (0.3, 0.0, 0.1))
+    moved(nose, (0.68, 0.0, 0.0))
+    canopy = moved(icosphere(subdivisions=2).apply_scale((0.2, 0.075, 0.09)), (0.3, 0.0, 0.1))
     right = _slab([(0.26, 0.0), (-0.06, -0.98), (-0.24, -0.98), (-0.22, 0.0)], 0.035)
     left = _slab([(0.26, 0.0), (0.017, 0.745), (-0.24, 0.745), (-0.22, 0.0)], 0.035)
     tail = _slab([(-0.6, 0.0), (-0.76, 0.36), (-0.88, 0.36), (-0.84, 0.0), (-0.88, -0.36), (-0.76, -0.36)], 0.028)
     fin = _slab([(-0.52, 0.0), (-0.78, 0.36), (-0.9, 0.36), (-0.86, 0.0)], 0.03)
     fin.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
     mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
-    hull = _joined([fuselage, nose, canopy, left, right, tail, fin])
+    hull = joined([fuselage, nose, canopy, left, right, tail, fin])
     return {"hull": hull, "mark": mark}
 
 
@@ -52,13 +54,11 @@ def camera(bands: int = 0) -> dict[str, trimesh.Trimesh]:
 
     `body`, `lens`, and with one or two bands round the body also `mark`, which tells cameras apart.
     """
-    body = _moved(box((0.24, 0.16, 0.16)), (0.0, 0.0, -0.12))
-    bump = _moved(box((0.1, 0.05, 0.09)), (0.0, -0.1, -0.12))
-    barrel = _moved(cylinder(radius=0.062, height=0.1, sections=32), (0.0, 0.0, 0.0))
-    rim = _moved(cylinder(radius=0.07, height=0.02, sections=32), (0.0, 0.0, 0.05))
-    parts = {"body": _joined([body, bump]), "lens": _joined([barrel, rim])}
+    body = moved(box((0.24, 0.16, 0.16)), (0.0, 0.0, -0.12))
+    bump = moved(box((0.1, 0.05, 0.09)), (0.0, -0.1, -0.12))
+    barrel = moved(cylinder(radius=0.062, height=0.1, sections=32), (0.0, 0.0, 0.0))
+    rim = moved(cylinder(radius=0.07, height=0.02, sections=32), (0.0, 0.0, 0.05))
+    parts = {"body": joined([body, bump]), "lens": joined([barrel, rim])}
     if bands:
-        parts["mark"] = _joined(
-            [_moved(box((0.02, 0.168, 0.168)), (0.1 - 0.045 * k, 0.0, -0.12)) for k in range(bands)]
-        )
+        parts["mark"] = joined([moved(box((0.02, 0.168, 0.168)), (0.1 - 0.045 * k, 0.0, -0.12)) for k in range(bands)])
     return parts

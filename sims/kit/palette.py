@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -24,23 +25,19 @@ def before_tone_mapping(text: str, *, linear: bool = False) -> RGB:
     and arrows are taken as linear light there (`linear`), those of meshes as sRGB. Source: Hill's ACES fit, as in
     three.js.
     """
-    shown = np.array(rgb(text)) / 255.0
-    light = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+    light = _to_light(np.array(rgb(text)))
     for dimmed in np.linspace(1.0, 0.5, 101):  # the curve can't show the brightest colours: keep the hue
         sent = _before_film(dimmed * light)
         if np.all(sent <= 1.0):
             break
     sent = np.clip(sent, 0.0, 1.0)
-    if not linear:
-        sent = np.where(sent <= 0.0031308, 12.92 * sent, 1.055 * sent ** (1 / 2.4) - 0.055)
-    red, green, blue = np.rint(255.0 * sent).astype(int).tolist()
+    red, green, blue = np.rint(255.0 * sent if linear else _to_srgb(sent)).astype(int).tolist()
     return red, green, blue
 
 
 def before_film(shown: npt.ArrayLike) -> npt.NDArray[np.uint8]:
     """As `before_tone_mapping`, of many colours (N, 3), 0–255, at once: for the points of a cloud."""
-    share = np.asarray(shown) / 255.0
-    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    light = _to_light(np.asarray(shown))
     sent = _before_film(light.T).T
     for _ in range(60):
         rows = np.flatnonzero(sent.max(axis=1) > 1.0)
@@ -48,9 +45,17 @@ def before_film(shown: npt.ArrayLike) -> npt.NDArray[np.uint8]:
             break
         light[rows] *= 0.98
         sent[rows] = _before_film(light[rows].T).T
-    sent = np.clip(sent, 0.0, 1.0)
-    sent = np.where(sent <= 0.0031308, 12.92 * sent, 1.055 * sent ** (1 / 2.4) - 0.055)
-    return np.rint(255.0 * sent).astype(np.uint8)
+    return np.rint(_to_srgb(np.clip(sent, 0.0, 1.0))).astype(np.uint8)
+
+
+def _to_light(shown: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Linear light, 0–1, of sRGB values 0–255. Source: IEC 61966-2-1, as in the next one."""
+    share = shown / 255.0
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+
+
+def _to_srgb(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return 255.0 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def _before_film(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, Self, cast, get_args
+from typing import Any, Literal, Self, cast, get_args
 from urllib.parse import urlencode
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -215,12 +215,6 @@ def choice(
     return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
-def named(pattern: str, *, title: str, description: str, allowed: str, group: str = "") -> Any:
-    """A name, at first absent (None), that the state's `options` offer; `allowed` says what the pattern matches."""
-    hints: Any = {"labels": {}, "group": group, "control": "choice", "allowed": allowed}
-    return Field(None, pattern=pattern, title=title, description=description, json_schema_extra=hints)
-
-
 def switch(default: bool, *, title: str, description: str, group: str = "") -> Any:
     """On or off; 1 or 0 in a link."""
     return Field(default, title=title, description=description, json_schema_extra={"group": group, "control": "switch"})
@@ -287,15 +281,17 @@ def vector(
     return Field(default, title=title, description=description, json_schema_extra=hints)
 
 
-def text(*, title: str, description: str, pattern: str, allowed: str, group: str = "") -> Any:
+def text(
+    *, title: str, description: str, pattern: str, allowed: str, control: Literal["none", "choice"] = "none",
+    group: str = "",
+) -> Any:  # fmt: skip
     """A few characters in a format of their own, or None, the default; `allowed` says the format to people.
 
-    It has no control: something else sets it, such as a click on a picture.
+    Without a control something else sets it, such as a click on a picture. The state's `options` say what there is
+    to choose from.
     """
-    return Field(
-        None, pattern=pattern, title=title, description=description,
-        json_schema_extra={"allowed": allowed, "group": group, "control": "none"},
-    )  # fmt: skip
+    hints: Any = {"labels": {}, "allowed": allowed, "group": group, "control": control}
+    return Field(None, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 
 
 def extra(field: FieldInfo) -> dict[str, Any]:
@@ -413,8 +409,6 @@ def allowed_values(field: FieldInfo) -> str:
     kind = extra(field).get("control")
     if kind == "switch":
         return "1 or 0"
-    if allowed := extra(field).get("allowed"):
-        return str(allowed)
     if words := choices(field):
         return "one of: " + ", ".join(words)
     if kind == "letters":

@@ -172,15 +172,12 @@ class Label(Node):
             set_property(self.handle, "text", text)
 
 
-class Arrow(Node):
-    """An arrow whose ends move."""
+class Arrows(Node):
+    """One arrow or several, whose ends move at once."""
 
     def between(self, tail: Vector, tip: Vector) -> None:
-        set_property(self.handle, "points", np.array([[tail, tip]], dtype=np.float32))
-
-
-class Arrows(Node):
-    """Several arrows whose ends move at once."""
+        """Place the only one."""
+        self.draw(np.array([[tail, tip]], dtype=float))
 
     def draw(self, ends: npt.NDArray[np.float64]) -> None:
         """Tails and tips (n, 2, 3)."""
@@ -280,17 +277,12 @@ class Stage:
         """
         frame = self.group(name)
         unit = np.eye(3) * length
-        colors = np.array([self.palette.line(a) for a in AXES], np.uint8)
         if ghost:
             patterns = {"x": (length, 0.0), "y": (0.12, 0.05), "z": (0.05, 0.05)}
             for axis, tip in zip(AXES, unit, strict=True):
                 self.lines(f"{name}/{axis}", [np.zeros(3), tip], axis, width=1.5, dash=patterns[axis])
         else:
-            self.scene.add_arrows(
-                f"{name}/arrows", points=np.stack([np.zeros((3, 3)), unit], axis=1),
-                colors=colors, shaft_radius=radius, head_radius=2.6 * radius,
-                head_length=7 * radius,
-            )  # fmt: skip
+            self.arrows(f"{name}/arrows", np.stack([np.zeros((3, 3)), unit], axis=1), AXES, radius=radius)
         for axis, word, tip in zip(AXES, letters or (), unit, strict=False):
             self.label(f"{name}/letter_{axis}", word, tip * 1.08)
         return frame
@@ -316,13 +308,9 @@ class Stage:
         )
         return Strokes(handle)
 
-    def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrow:
+    def arrow(self, name: str, tail: Vector, tip: Vector, role: str, *, radius: float = 0.015) -> Arrows:
         """An arrow from tail to tip."""
-        handle = self.scene.add_arrows(
-            name, points=np.array([[tail, tip]], dtype=float), colors=self.palette.line(role),
-            shaft_radius=radius, head_radius=2.6 * radius, head_length=7 * radius,
-        )  # fmt: skip
-        return Arrow(handle)
+        return self.arrows(name, np.array([[tail, tip]]), role, radius=radius)
 
     def arrows(self, name: str, ends: npt.ArrayLike, roles: str | Sequence[str], *, radius: float = 0.015) -> Arrows:
         """Arrows from tails to tips (n, 2, 3), any number of them in one colour, or each in that of its role."""

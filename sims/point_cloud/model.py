@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from geometry.arrays import Array
-from sims.kit.params import Params, choice, named, number, switch
+from sims.kit.params import Params, choice, number, switch, text
 from sims.kit.sim import DRAWN, Step, View
 from sims.point_cloud import library
 from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
@@ -93,9 +93,9 @@ class CloudParams(Params):
         description="Outliers are this many standard deviations farther from their neighbours than is usual",
     )  # fmt: skip
 
-    file: str | None = named(
-        library.NAME, title="File", description="A cloud of your own, or one of this server's folder",
-        allowed="the name of a file, without a path", group=OWN,
+    file: str | None = text(
+        title="File", description="A cloud of your own, or one of this server's folder", control="choice", group=OWN,
+        pattern=library.NAME, allowed="the name of a file, without a path",
     )  # fmt: skip
 
     def options(self, name: str) -> Mapping[Any, str]:

@@ -6,7 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 import trimesh
-from trimesh.creation import annulus, cylinder
+from trimesh.creation import annulus, box, cylinder
+
+from sims.kit.bodies import joined, moved
 
 FLOOR = -1.0
 """Height of the floor; the base, where the world's origin is, stands on a column."""
@@ -19,7 +21,7 @@ AXLE = 0.19
 @lru_cache(maxsize=1)
 def link() -> trimesh.Trimesh:
     """Two tapered rails from x = −1 to 0, one above the other: what is between them stays in sight."""
-    return _joined([_rail(side) for side in (-1.0, 1.0)])
+    return joined([_rail(side) for side in (-1.0, 1.0)])
 
 
 def _rail(side: float) -> trimesh.Trimesh:
@@ -38,7 +40,7 @@ def bearing() -> trimesh.Trimesh:
     """The ring of a joint about z, with its axle."""
     ring = annulus(r_min=0.082, r_max=0.12, height=0.1, sections=40)
     axle = cylinder(radius=0.014, height=2.0 * AXLE, sections=16)
-    return _joined([ring, axle])
+    return joined([ring, axle])
 
 
 @lru_cache(maxsize=1)
@@ -46,9 +48,9 @@ def gripper() -> dict[str, trimesh.Trimesh]:
     """Two fingers round the origin that point along x, on a palm; the finger at +y is the `mark`."""
     stem = cylinder(radius=0.04, height=0.05, sections=24)
     stem.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
-    stem.apply_translation((-GRIPPER + 0.02, 0.0, 0.0))
-    palm = _box((0.035, 0.17, 0.08), (-0.145, 0.0, 0.0))
-    return {"hand": _joined([stem, palm, _finger(-1.0)]), "mark": _finger(1.0)}
+    moved(stem, (-GRIPPER + 0.02, 0.0, 0.0))
+    palm = moved(box((0.035, 0.17, 0.08)), (-0.145, 0.0, 0.0))
+    return {"hand": joined([stem, palm, _finger(-1.0)]), "mark": _finger(1.0)}
 
 
 def _finger(side: float) -> trimesh.Trimesh:
@@ -73,21 +75,7 @@ def column() -> trimesh.Trimesh:
 @lru_cache(maxsize=1)
 def foot() -> trimesh.Trimesh:
     """What the column stands on."""
-    plate: trimesh.Trimesh = cylinder(radius=0.3, height=0.05, sections=48)
-    plate.apply_translation((0.0, 0.0, FLOOR + 0.025))
-    return plate
-
-
-def _box(extents: tuple[float, float, float], at: tuple[float, float, float]) -> trimesh.Trimesh:
-    box: trimesh.Trimesh = trimesh.creation.box(extents)
-    box.apply_translation(at)
-    return box
-
-
-def _joined(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
-    whole = trimesh.util.concatenate(parts)
-    assert isinstance(whole, trimesh.Trimesh)
-    return whole
+    return moved(cylinder(radius=0.3, height=0.05, sections=48), (0.0, 0.0, FLOOR + 0.025))
 
 
 def axes() -> list[tuple[str, tuple[float, float, float], tuple[float, float, float]]]:
