@@ -27,7 +27,7 @@ from app.session import Full, Session, Sessions, refusal
 from sims.kit.params import BadParams, Params
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
-from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire, takes
+from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
 
 log = logging.getLogger("sim3")
 LARGEST_MESSAGE = 16 * 1024
@@ -126,14 +126,9 @@ class Link:
     visit: Visit
     viewer: Viewer | None = None
 
-    def take(self, message: GuiUpdateMessage) -> bool | None:
-        """Give a value to its control: False if it doesn't fit, None if that is for viser to do."""
-        if self.viewer is None:
-            return False
-        taken = self.viewer.input(message.uuid, message.updates.value)
-        if taken is None and not takes(self.viewer.client, message.uuid, message.updates.value):
-            return False
-        return taken
+    def take(self, message: GuiUpdateMessage) -> bool:
+        """Give a value to its control, which viser needn't hear of; False if there is none that can take it."""
+        return self.viewer is not None and self.viewer.input(message.uuid, message.updates.value)
 
 
 class Bridge:
@@ -204,10 +199,9 @@ class Bridge:
             if link.visit.watching and message.commands:
                 self.refusals["watching"] += 1
                 continue
-            taken = link.take(message) if isinstance(message, GuiUpdateMessage) else None
-            if taken is None:
+            if not isinstance(message, GuiUpdateMessage):
                 wire.feed(data, message.value_of)
-            elif not taken:
+            elif not link.take(message):
                 self.refusals["value"] += 1
         return 1000
 

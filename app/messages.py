@@ -59,10 +59,6 @@ class GuiUpdateMessage(Incoming, tag=True):
     uuid: Text
     updates: Value
 
-    @property
-    def value_of(self) -> str | None:
-        return None if self.updates.value is True else self.uuid
-
 
 class ScenePointerMessage(Incoming, tag=True):
     event_type: Literal["click"]

@@ -146,12 +146,10 @@ class Viewer:
         self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked, self._pointed))
         self._live = False
 
-    def input(self, control: str, value: Any) -> bool | None:
-        """Take what the page says that a control is set to. None if no control has that name, False if it can't be."""
+    def input(self, control: str, value: Any) -> bool:
+        """Take what the page says that a control is set to; False if there is none, or it can't be set to that."""
         known = self._inputs.get(control)
-        if known is None:
-            return None
-        if not received(known.handle, value):
+        if known is None or not received(known.handle, value):
             return False
         with suppress(LookupError, ValueError):  # no page sends a value that can't be
             known.take(known.handle.value)

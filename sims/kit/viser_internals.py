@@ -184,12 +184,6 @@ def received(control: Any, value: Any) -> bool:
     return True
 
 
-def takes(client: viser.ClientHandle, control: str, value: Any) -> bool:
-    """Whether a control's value may become this one; viser converts what it is sent, and fails where it can't."""
-    handle = client.gui._gui_input_handle_from_uuid.get(control)
-    return handle is None or _alike(handle.value, value)
-
-
 def _alike(old: Any, new: Any) -> bool:
     if isinstance(old, tuple):
         return isinstance(new, list) and len(new) == len(old) and all(map(_alike, old, new))

@@ -47,7 +47,6 @@ VISER = Path(viser.__file__).parent
 PINNED = {
     "_assignable_props_api",
     "_prop_hints",
-    "_gui_input_handle_from_uuid",
     "_impl",
     "_live_connections",
     "_owner_id",
