@@ -16,7 +16,6 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from contextvars import copy_context
 from typing import Any
 
@@ -97,8 +96,10 @@ class Session:
 
     async def _seek(self, handle: Callable[..., Mapping[str, Any]], place: tuple[float, ...]) -> None:
         """Find out in the pool what a handle's place means."""
-        with suppress(ValidationError, GeometryError):
+        try:
             self.change(await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place))
+        except (ValidationError, GeometryError) as error:
+            self._tell({"type": "error", "message": str(error)})
 
     def keep(self, kept: object, size: int, changes: Mapping[str, Any]) -> None:
         """Take what was made of a file of some bytes, in place of that of the file before."""
