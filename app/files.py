@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import JSONResponse, Response
+from starlette.requests import ClientDisconnect
 
 from app.session import Session, Sessions, room_of
 from sims import by_slug
@@ -21,12 +21,27 @@ KEPT = 10
 """Largest files that all sessions together may keep."""
 ANYWHERE = {"access-control-allow-origin": "*", "access-control-allow-methods": "POST"}
 """A sandboxed frame has no origin; the key in the address is the secret."""
+STALL = 10.0
+"""Seconds without a byte after which a file is given up."""
 BUSY = "The server has as many files as it can hold; try again later."
+GONE = "There is no such session."
+
+
+class Refusal(Exception):
+    """What is said, and the status it is said with."""
+
+    def __init__(self, status: int, words: str) -> None:
+        super().__init__(words)
+        self.status = status
 
 
 def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
     """The addresses of files; `largest` is how many bytes one may have."""
     coming = Coming(AT_ONCE * largest)
+
+    @app.exception_handler(Refusal)
+    async def refused(request: Request, refusal: Refusal) -> Response:
+        return JSONResponse({"detail": str(refusal)}, refusal.status, headers=ANYWHERE)
 
     @app.options("/sims/{slug}/s/{room}/{key}/file", include_in_schema=False)
     async def may(slug: str, room: str, key: str) -> Response:
@@ -34,89 +49,75 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
 
     @app.post("/sims/{slug}/s/{room}/{key}/file", include_in_schema=False)
     async def bring(request: Request, slug: str, room: str, key: str, name: str) -> Response:
-        session = _session(sessions, slug, room, key)
+        if (session := _session(sessions, slug, room, key)) is None:
+            raise Refusal(404, GONE)
         length = _length(request, largest)
         if sessions.kept_bytes() + length > KEPT * largest:
-            return _refused(503, BUSY)
-        with coming.room_for(length) as fits:
-            if not fits:
-                return _refused(503, BUSY)
-            data = await _received(request, length)
-            if data is None:
-                return _refused(400, "The file broke off on its way.")
-            return await _read(sessions, session, name[:200], data, largest)
+            raise Refusal(503, BUSY)
+        async with coming.received(request, length) as data:
+            await _read(sessions, session, name[:200], data, largest)
+        return JSONResponse({"name": name}, headers=ANYWHERE)
 
     @app.get("/sims/{slug}/s/{room}/{key}/result/{name}", include_in_schema=False)
     async def take(slug: str, room: str, key: str, name: str) -> Response:
         session = _session(sessions, slug, room, key)
-        make = session.sim.downloads.get(name)
-        if make is None:
-            raise HTTPException(404, "There is no such file.")
+        make = None if session is None else session.sim.downloads.get(name)
+        if session is None or make is None:
+            raise HTTPException(404, GONE if session is None else "There is no such file.")
         data = await asyncio.get_running_loop().run_in_executor(sessions.reading, make, session.params)
         headers = {"content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store"}
         return Response(data, media_type="application/octet-stream", headers=headers)
 
 
 class Coming:
-    """How many bytes of files are on their way."""
+    """The files that come and are read just now. Only what has come takes room: a slow page holds up nobody."""
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._bytes = 0
 
-    @contextmanager
-    def room_for(self, length: int) -> Iterator[bool]:
-        """Whether that many more fit, and room for them as long as they are on their way."""
-        if self._bytes + length > self._most:
-            yield False
-            return
-        self._bytes += length
+    @asynccontextmanager
+    async def received(self, request: Request, length: int) -> AsyncIterator[bytes]:
+        """The body of a request, which takes room as long as it is needed. Raises `Refusal`."""
+        data = bytearray()
+        chunks = request.stream()
         try:
-            yield True
+            while chunk := await asyncio.wait_for(anext(chunks, b""), STALL):
+                data += chunk
+                self._bytes += len(chunk)
+                if self._bytes > self._most:
+                    raise Refusal(503, BUSY)
+            if len(data) != length:
+                raise Refusal(400, "The file broke off on its way.")
+            yield bytes(data)
+        except (TimeoutError, ClientDisconnect):
+            raise Refusal(400, "The file broke off on its way.") from None
         finally:
-            self._bytes -= length
+            self._bytes -= len(data)
 
 
-def _session(sessions: Sessions, slug: str, room: str, key: str) -> Session:
+def _session(sessions: Sessions, slug: str, room: str, key: str) -> Session | None:
     sim = by_slug(slug)
-    session = None if sim is None or room_of(key) != room else sessions.find(sim, room)
-    if session is None:
-        raise HTTPException(404, "There is no such session.")
-    return session
+    return None if sim is None or room_of(key) != room else sessions.find(sim, room)
 
 
 def _length(request: Request, largest: int) -> int:
     try:
         length = int(request.headers["content-length"])
     except (KeyError, ValueError):
-        raise HTTPException(411, "The length of the file must be told.") from None
+        raise Refusal(411, "The length of the file must be told.") from None
     if not 0 <= length <= largest:
-        raise HTTPException(413, f"It is {length / 1e6:,.1f} MB; at most {largest / 1e6:,.0f} MB are taken.")
+        raise Refusal(413, f"It is {length / 1e6:,.1f} MB; at most {largest / 1e6:,.0f} MB are taken.")
     return length
 
 
-async def _received(request: Request, length: int) -> bytes | None:
-    data = bytearray()
-    async for chunk in request.stream():
-        data += chunk
-        if len(data) > length:
-            return None
-    return bytes(data) if len(data) == length else None
-
-
-async def _read(sessions: Sessions, session: Session, name: str, data: bytes, largest: int) -> Response:
+async def _read(sessions: Sessions, session: Session, name: str, data: bytes, largest: int) -> None:
     files = session.sim.files
     if files is None:
-        return _refused(404, "This sim takes no files.")
+        raise Refusal(404, "This sim takes no files.")
     loop = asyncio.get_running_loop()
     try:
         kept, changes = await loop.run_in_executor(sessions.reading, files.read, name, data, largest)
     except ValueError as error:
-        return _refused(422, str(error))
+        raise Refusal(422, str(error)) from None
     session.keep(kept, len(data), changes)
-    return JSONResponse({"name": name}, headers=ANYWHERE)
-
-
-def _refused(status: int, words: str) -> Response:
-    told: dict[str, Any] = {"detail": words}
-    return JSONResponse(told, status, headers=ANYWHERE)

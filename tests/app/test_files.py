@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import Iterator
+from contextlib import ExitStack
 from typing import Any
 
 import httpx
 import numpy as np
 import pytest
 
+from app import files
 from app.session import Session, new_key, room_of
 from sims import by_slug
 from sims.point_cloud import library
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import ply_bytes, read
 from tests.app.conftest import Local
-from tests.server import wait_for
+from tests.server import PATIENCE, wait_for
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
 FILE = ply_bytes(Cloud("mine", POINTS))
@@ -158,6 +161,24 @@ def test_the_server_keeps_no_more_than_it_can(local: Local, monkeypatch: pytest.
     answer = desk.bring("mine.ply", FILE)
     assert answer.status_code == 503
     assert desk.params.dataset == "room"
+
+
+def test_slow_files_hold_up_nobody_and_are_given_up(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
+    slow = Desk(local)
+    head = f"POST {slow.path}file?name=a.xyz HTTP/1.1\r\nHost: here\r\nContent-Length: 1000000\r\n\r\n0 0 0"
+    address = httpx.URL(local.url)
+    with ExitStack() as stack:
+        lines = [stack.enter_context(socket.create_connection((address.host, address.port or 80))) for _ in range(6)]
+        for line in lines[:-1]:
+            line.sendall(head.encode())
+        assert Desk(local).bring("mine.ply", FILE).status_code == 200
+        monkeypatch.setattr(files, "STALL", 0.05)
+        lines[-1].sendall(head.encode())
+        lines[-1].settimeout(PATIENCE)
+        answer = lines[-1].makefile("rb").read(4000)
+    assert b" 400 " in answer.splitlines()[0]
+    assert b"broke off" in answer
+    assert slow.params.dataset == "room"
 
 
 def test_the_administrators_folder_is_offered_by_name(local: Local) -> None:
