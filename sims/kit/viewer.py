@@ -137,12 +137,18 @@ class Viewer:
         client.gui.set_panel_label(sim.title)
         if look.controls:
             self._dock()
-        self._panes = self._add_panes()
+        # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls
+        held = any(not name.startswith("/") for name in sim.handles)
+        self._panes = self._add_panes() if held or not look.phone else None
         self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
+        if self._panes is None:
+            self._panes = self._add_panes()
+        if look.controls:
+            self._readouts = self._add_readouts()
         self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked, self._pointed))
         self._live = False
 
@@ -237,8 +243,10 @@ class Viewer:
                         self._button(action.label, action.hint, action.name)
             self._button("Reset", "Back to the state of the link that you opened", "reset", color="gray")
             gui.add_html(toolbar(self.sim.downloads))
-        with gui.add_folder("Read-outs"):
-            self._readouts = gui.add_html("")
+
+    def _add_readouts(self) -> viser.GuiHtmlHandle:
+        with self.client.gui.add_folder("Read-outs"):
+            return self.client.gui.add_html("")
 
     def _button(self, label: str, hint: str, name: str, color: Any = None) -> None:
         button = self.client.gui.add_button(label, hint=hint, color=color, disabled=self.look.watching)

@@ -229,6 +229,18 @@ def test_without_controls_there_is_the_scene_alone(sim: AnySim) -> None:
         assert rig.model.names
 
 
+@each_sim
+def test_on_a_phone_pictures_are_where_they_are_needed(sim: AnySim) -> None:
+    """In one column: first of all where something in them is held, else between what is set and the read-outs."""
+    with Rig(sim, look=Look(phone=True, narrow=True)) as rig:
+        paths = [rig.model.path(element)[0] for element in rig.model.ordered() if rig.model.path(element)]
+        order = [folder for folder in dict.fromkeys(paths) if folder in ("Pictures", "Actions", "Read-outs")]
+        held = sim.panes is not None and "data-handle" in rig.model.html("s3-panes")
+    assert order[-1] == "Read-outs"
+    assert ("Pictures" in order) == (sim.panes is not None)
+    assert (order[0] == "Pictures") == held
+
+
 # ---- what hands do
 
 
