@@ -64,7 +64,7 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
         make = None if session is None else session.sim.downloads.get(name)
         if session is None or make is None:
             raise HTTPException(404, GONE if session is None else "There is no such file.")
-        data = await asyncio.get_running_loop().run_in_executor(sessions.reading, make, session.params)
+        data = await asyncio.get_running_loop().run_in_executor(sessions.aside, make, session.params)
         headers = {"content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store"}
         return Response(data, media_type="application/octet-stream", headers=headers)
 
@@ -117,7 +117,7 @@ async def _read(sessions: Sessions, session: Session, name: str, data: bytes, la
         raise Refusal(404, "This sim takes no files.")
     loop = asyncio.get_running_loop()
     try:
-        kept, changes = await loop.run_in_executor(sessions.reading, files.read, name, data, largest)
+        kept, changes = await loop.run_in_executor(sessions.aside, files.read, name, data, largest)
     except ValueError as error:
         raise Refusal(422, str(error)) from None
     session.keep(kept, len(data), changes)

@@ -58,6 +58,7 @@ class Session:
         self._dirty = False
         self._motion: asyncio.Task[None] | None = None
         self._seeking: asyncio.Task[None] | None = None
+        self._sought: tuple[Callable[..., Mapping[str, Any]], tuple[float, ...]] | None = None
         self._told_at = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self.reduced_motion = False
@@ -89,17 +90,25 @@ class Session:
         handle = self.sim.handles.get(name)
         if handle is None:
             raise KeyError(name)
-        if self.sim.heavy:
-            self._seeking = asyncio.get_running_loop().create_task(self._seek(handle, place))
-        else:
+        if not self.sim.heavy:
             self.change(handle(self.params, place))
+            return
+        self._sought = handle, place
+        if self._seeking is None:
+            self._seeking = asyncio.get_running_loop().create_task(self._seek())
 
-    async def _seek(self, handle: Callable[..., Mapping[str, Any]], place: tuple[float, ...]) -> None:
-        """Find out in the pool what a handle's place means."""
+    async def _seek(self) -> None:
+        """Find out in the pool what a handle's place means; of places that come meanwhile only the last counts."""
         try:
-            self.change(await asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place))
-        except (ValidationError, GeometryError) as error:
-            self._tell({"type": "error", "message": str(error)})
+            while self._sought is not None:
+                (handle, place), self._sought = self._sought, None
+                work = asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
+                try:
+                    self.change(await work)
+                except (ValidationError, GeometryError) as error:
+                    self._tell({"type": "error", "message": str(error)})
+        finally:
+            self._seeking = None
 
     def keep(self, kept: object, size: int, changes: Mapping[str, Any]) -> None:
         """Take what was made of a file of some bytes, in place of that of the file before."""
@@ -246,8 +255,8 @@ class Sessions:
         self._by_room: dict[tuple[str, str], Session] = {}
         self._pool = ThreadPoolExecutor(max_workers=2, thread_name_prefix="solve")
         self.counts: Counter[str] = Counter()
-        self.reading = ThreadPoolExecutor(max_workers=1, thread_name_prefix="read")
-        """Reads the files that learners bring, however long it takes, beside what solves."""
+        self.aside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="aside")
+        """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
 
     def __len__(self) -> int:
         return len(self._by_room)
@@ -296,7 +305,7 @@ class Sessions:
 
     def close(self) -> None:
         """End the pools."""
-        self.reading.shutdown(wait=False, cancel_futures=True)
+        self.aside.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -62,7 +63,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions, largest)
-    _add_api(app)
+    _add_api(app, sessions)
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 
@@ -183,7 +184,7 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         )
 
 
-def _add_api(app: FastAPI) -> None:
+def _add_api(app: FastAPI, sessions: Sessions) -> None:
     @app.get("/api/sims", tags=["catalogue"])
     async def catalogue() -> list[dict[str, Any]]:
         """Every sim with its title, summary and concepts."""
@@ -195,21 +196,24 @@ def _add_api(app: FastAPI) -> None:
         return pages.details(sim_or_404(slug))
 
     for sim in SIMS:
-        _add_solve(app, sim)
+        _add_solve(app, sessions, sim)
 
     @app.post("/api/sims/{slug}/solve", include_in_schema=False)
     async def unknown(slug: str) -> None:
         sim_or_404(slug)
 
 
-def _add_solve(app: FastAPI, sim: AnySim) -> None:
-    def solve(params: Any = None) -> Response:
-        params = params or sim.params()
+def _add_solve(app: FastAPI, sessions: Sessions, sim: AnySim) -> None:
+    def answer(params: Params) -> Response:
         try:
             solution = sim.solve(params)
         except GeometryError as error:
             raise HTTPException(422, str(error)) from error
         return JSONResponse(jsonable({"params": params.model_dump(mode="json"), "solution": solution}))
+
+    async def solve(params: Any = None) -> Response:
+        work = asyncio.get_running_loop().run_in_executor(sessions.aside, answer, params or sim.params())
+        return await work
 
     solve.__annotations__ = {"params": sim.params | None, "return": Response}
     solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"

@@ -615,3 +615,29 @@ def test_what_a_handle_of_a_heavy_sim_means_is_found_beside_the_loop() -> None:
         assert room.eye.seen[-1] == (7.0, 14.0)
 
     run(test)
+
+
+def test_of_a_flood_of_places_only_the_last_is_looked_for() -> None:
+    async def test() -> None:
+        room = Room(heavy=True)
+        await room.drawn()
+        asked: list[float] = []
+
+        def handle(params: ToyParams, place: tuple[float, ...]) -> dict[str, float]:
+            asked.append(place[0])
+            time.sleep(0.02)
+            return {"size": place[0]}
+
+        room.session.sim = dataclasses.replace(room.session.sim, handles={"/grip": handle})
+        room.session.drag("/grip", (1.0, 0.0, 0.0))
+        while not asked:
+            await asyncio.sleep(0)
+        for size in (2.0, 3.0, 4.0):
+            room.session.drag("/grip", (size, 0.0, 0.0))
+        assert room.session._seeking is not None
+        await room.session._seeking
+        await room.drawn()
+        assert asked == [1.0, 4.0]
+        assert room.eye.seen[-1] == (4.0, 8.0)
+
+    run(test)
