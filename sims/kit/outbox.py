@@ -25,7 +25,7 @@ Entity = tuple[str, str]
 Window = Coroutine[Any, Any, None]
 Send = Callable[[bytes], Window]
 _pack = msgspec.msgpack.Encoder().encode
-_compress = zstandard.ZstdCompressor(level=1).compress
+_compress = zstandard.ZstdCompressor(level=-1).compress
 
 
 class Message(Protocol):
