@@ -15,6 +15,7 @@ from starlette.templating import Jinja2Templates
 from app.settings import ROOT
 from sims import SIMS
 from sims.kit import viser_client
+from sims.kit.palette import DARK
 from sims.kit.params import Complaint, Params
 from sims.kit.sim import Sim
 
@@ -85,6 +86,7 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, *, watch
         "slug": sim.slug, "title": sim.title, "watching": watching,
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "files": None if sim.files is None else {"largest": largest},
+        "label": {"ink": DARK.ink, "plate": DARK.page},
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     client = f"{base(request)}/viser/{viser_client.fingerprint()}"

@@ -40,7 +40,18 @@
     initialCameraLookAt: target.join(","),
     initialCameraFov: "0.7",
   });
-  if (dark) search.set("darkMode", "1");
+  if (dark) {
+    search.set("darkMode", "1");
+    // viser writes labels in black on white in any theme. In the dark one their shaders are told its colours.
+    const light = (color) => [1, 3, 5].map((k) => (parseInt(color.slice(k, k + 2), 16) / 255).toFixed(3)).join(", ");
+    const { prototype } = WebGL2RenderingContext;
+    const take = prototype.shaderSource;
+    prototype.shaderSource = function (shader, source) {
+      take.call(this, shader, source
+        .replace("vec4(0.0, 0.0, 0.0, a)", `vec4(${light(sim.label.ink)}, a)`)
+        .replace("vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)", `vec4(${light(sim.label.plate)}, 0.75 * vAlpha)`));
+    };
+  }
   const Query = URLSearchParams;
   window.URLSearchParams = class extends Query {
     constructor(init) {

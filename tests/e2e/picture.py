@@ -36,10 +36,13 @@ class Picture:
 
     def shows(self, role: str, world: npt.ArrayLike, *, within: int = 3) -> bool:
         """Whether a colour of the palette is at a place in the world, or within a few pixels of it."""
+        return any(self._alike(role, pixel) for pixel in self.patch(world, within))
+
+    def patch(self, world: npt.ArrayLike, within: int) -> npt.NDArray[np.uint8]:
+        """The pixels (n, 3) at most so far, across and down, from a place in the world."""
         x, y = self.place(world)
         row, column = round(y), round(x)
-        patch = self._pixels[row - within : row + within + 1, column - within : column + within + 1]
-        return any(self._alike(role, pixel) for pixel in patch.reshape(-1, 3))
+        return self._pixels[row - within : row + within + 1, column - within : column + within + 1].reshape(-1, 3)
 
     def around(self, world: npt.ArrayLike) -> str:
         """For a failed test: the place and the colour that is there."""

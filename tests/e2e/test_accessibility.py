@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Frame, Page
 
 from sims import SIMS
+from sims.kit.palette import DARK
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner
+from tests.e2e.picture import Picture
 
 TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 FRAME = '<!doctype html><html lang="en"><title>A sim</title><main><h1>A sim</h1></main></html>'
@@ -102,6 +105,12 @@ def test_a_sim_in_the_dark_is_for_everybody(classroom: Classroom) -> None:
     assert axe(learner.page) == []
     learner.open("euler-angles/embed?theme=dark&pitch=90")
     assert axe(learner.page) == []
+
+    def lettered() -> bool:  # light ink on a dark plate; labels come last
+        pixels = Picture(learner, DARK).patch(learner.scene.world_pose("/world/letter_y")[:3, 3], 7).min(axis=1)
+        return bool(pixels.max() > 120 and np.median(pixels) < 80)
+
+    learner.until(lettered)
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

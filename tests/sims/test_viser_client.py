@@ -9,6 +9,7 @@ import pytest
 
 from sims.kit import viser_client
 from sims.kit.viser_client import DIGITS, decoded, files
+from tests.server import ROOT
 
 
 def encoded(data: bytes) -> str:
@@ -44,6 +45,12 @@ def test_loader_sets_up_what_the_code_expects_and_then_loads_it() -> None:
     assert loader.startswith("(async()=>{")
     assert loader.index("globalThis.__viserZstdWasm=") < loader.index('import("./client.js")')
     assert loader.endswith("})();")
+
+
+@pytest.mark.parametrize("words", ["vec4(0.0, 0.0, 0.0, a)", "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)"])
+def test_what_the_dark_theme_changes_in_labels_is_there(words: str) -> None:
+    assert files()["client.js"].decode("utf-8").count(words) == 1
+    assert words in (ROOT / "static" / "boot.js").read_text()
 
 
 def test_a_page_of_another_make_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
