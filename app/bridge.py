@@ -76,11 +76,17 @@ class Point(msgspec.Struct, tag="point", tag_field="type", forbid_unknown_fields
     name: Annotated[str, msgspec.Meta(max_length=100)]
 
 
+class Select(msgspec.Struct, tag="select", tag_field="type", forbid_unknown_fields=True):
+    """A click on something that is linked."""
+
+    name: Annotated[str, msgspec.Meta(max_length=100)]
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state."""
 
 
-channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Get)
+channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Get)
 
 
 @dataclass
@@ -116,6 +122,7 @@ class Visit:
     watching: bool
     name: str = ""
     sockets: int = 0
+    viewer: Viewer | None = None
     hello: asyncio.Future[Hello] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
 
 
@@ -227,7 +234,7 @@ class Bridge:
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
             look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching, hello.width <= PHONE)
-            link.viewer = Viewer(visit.sim, client, session, look, session.params)
+            link.viewer = visit.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)
         except Full:
             self.refusals["full"] += 1
@@ -325,6 +332,10 @@ class Bridge:
         if isinstance(message, Get):
             answer(session.state())
             return
+        if visit.watching and isinstance(message, Point):  # for their own eyes
+            if visit.viewer is not None:
+                visit.viewer.point(message.name)
+            return
         if visit.watching:
             self.refusals["watching"] += 1
             return
@@ -334,7 +345,9 @@ class Bridge:
             elif isinstance(message, Act):
                 session.act(message.name)
             elif isinstance(message, Point):
-                session.point(message.name)
+                session.point(message.name, answer)
+            elif isinstance(message, Select):
+                session.select(message.name)
             elif isinstance(message, Set):
                 session.change(message.params, live=False)
         except ValidationError as error:

@@ -59,6 +59,7 @@ class Session:
         self._motion: asyncio.Task[None] | None = None
         self._seeking: asyncio.Task[None] | None = None
         self._sought: tuple[Callable[..., Mapping[str, Any]], tuple[float, ...]] | None = None
+        self._pointing: Callable[[dict[str, Any]], None] | None = None
         self._told_at = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self.reduced_motion = False
@@ -116,10 +117,24 @@ class Session:
         self.stop_motion()
         self._set(self.params.moved(changes))
 
-    def point(self, name: str) -> None:
-        """Light up in every scene what somebody points at in a picture or table; an empty name is nothing."""
+    def point(self, name: str, by: Callable[[dict[str, Any]], None] | None = None) -> None:
+        """Light up for everybody what somebody points at in a picture or table; an empty name is nothing.
+
+        `by` is the channel that it came from, whose page has lit up its own pictures and tables.
+        """
+        self._pointing = by if name else None
         for viewer in list(self.viewers):
             viewer.point(name)
+        for listener in list(self.listeners):
+            if listener is not by:
+                listener({"type": "point", "name": name})
+
+    def select(self, name: str) -> None:
+        """Select what is linked under a name; nothing happens where that can't be selected."""
+        with suppress(ValidationError):
+            selected = self.params.changed({self.sim.selects: name})
+            self.stop_motion()
+            self._set(selected)
 
     def act(self, name: str) -> None:
         """Press a button: reset, or one of the sim's actions."""
@@ -233,6 +248,8 @@ class Session:
         """Forget a viewer or a channel."""
         self.viewers.discard(viewer)
         self.listeners.discard(listener)
+        if listener is not None and listener is self._pointing:
+            self.point("")
         if not self.viewers and not self.listeners:
             self.left_at = time.monotonic()
             self.stop_motion()

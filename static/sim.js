@@ -70,6 +70,9 @@ function receive(message) {
     describeScene(message.text);
     goLive();
     post({ type: "sim3:state", params: message.params, query });
+  } else if (message.type === "point") {
+    theirs = message.name;
+    light();
   } else if (message.type === "error") {
     notify("⚠ " + message.message);
     post({ type: "sim3:error", message: message.message });
@@ -152,12 +155,13 @@ document.addEventListener("pointerdown", (event) => {
   document.documentElement.setPointerCapture(event.pointerId);
   held = {
     pointer: event.pointerId, dx: Number(grip.dataset.x) - start.x, dy: Number(grip.dataset.y) - start.y,
-    name: grip.dataset.handle, svgName: svg.dataset.pane,
+    name: grip.dataset.handle, svgName: svg.dataset.pane, link: grip.dataset.link,
   };
   document.documentElement.classList.add("s3-holding");
 }, true);
 
 // A click anywhere in a picture that says so, or Enter on it, puts its handle there; the handle then takes the focus.
+// A click on a point means the very pixel of that point.
 function pick(ground, at) {
   if (sim.watching) return;
   focused = gripNamed(ground.dataset.pick);
@@ -168,7 +172,9 @@ function pick(ground, at) {
 document.addEventListener("click", (event) => {
   const svg = event.target.closest?.("svg[data-pane]");
   const ground = svg?.querySelector("[data-pick]");
-  if (ground && !event.target.closest("[data-handle]")) pick(ground, place(event, svg));
+  if (!ground || event.target.closest("[data-handle]")) return;
+  const spot = event.target.closest(".s3-point:has(.s3-reach)")?.transform.baseVal[0].matrix;
+  pick(ground, spot ? { x: spot.e, y: spot.f } : place(event, svg));
 });
 
 document.addEventListener("pointermove", (event) => {
@@ -183,6 +189,7 @@ document.addEventListener("pointermove", (event) => {
 for (const kind of ["pointerup", "pointercancel"]) {
   document.addEventListener(kind, (event) => {
     if (held?.pointer !== event.pointerId) return;
+    if (kind === "pointerup" && held.link && held.x === undefined) select(held.link);
     held = null;
     document.documentElement.classList.remove("s3-holding");
   }, true);
@@ -280,49 +287,62 @@ function gripNamed(name) {
 document.addEventListener("focusin", (event) => {
   const grip = event.target.closest?.("[data-handle], [data-pick]");
   const row = event.target.closest?.("[data-link]");
-  focused = grip ? gripNamed(grip.dataset.handle ?? grip.dataset.pick) : row ? `${linked(row)} button` : null;
+  focused = grip ? gripNamed(grip.dataset.handle ?? grip.dataset.pick) : row ? `${linked(row.dataset.link)} button` : null;
 });
 
 // At once, and not with the next picture: under software rendering that may be several keys away.
+let keeping = false;
+
 function keepFocus() {
   if (!focused || document.activeElement !== document.body) return;
+  keeping = true;
   document.querySelector(focused)?.focus({ preventScroll: true });
+  keeping = false;
 }
 
 // --- Links: what stands for the same thing in pictures and tables lights up together; a click selects it -----------
 
-let lit = "";
+let mine = ""; // what the pointer or the focus is on
+let theirs = ""; // what somebody else in the room points at
 
-function linked(node) {
-  return `[data-link="${CSS.escape(node.dataset.link)}"]`;
+function linked(name) {
+  return `[data-link="${CSS.escape(name)}"]`;
 }
 
 function light() {
+  const lit = [mine, theirs].filter(Boolean).map(linked).join();
   for (const node of document.querySelectorAll(".s3-lit")) if (!lit || !node.matches(lit)) node.classList.remove("s3-lit");
   if (lit) for (const node of document.querySelectorAll(lit)) node.classList.add("s3-lit");
 }
 
-for (const kind of ["pointerover", "focusin"]) {
-  document.addEventListener(kind, (event) => {
-    const node = event.target.closest?.("[data-link]");
-    const now = node ? linked(node) : "";
-    if (now === lit) return;
-    lit = now;
-    light();
-    if (!sim.watching) send({ type: "point", name: node?.dataset.link ?? "" });
-  });
+function pointAt(node) {
+  const name = node?.closest?.("[data-link]")?.dataset.link ?? "";
+  if (name === mine) return;
+  mine = name;
+  light();
+  send({ type: "point", name });
 }
+
+function select(name) {
+  if (!sim.watching) send({ type: "select", name });
+}
+
+// What is held stays lit, wherever the pointer is; focus that comes back to a table drawn anew points at nothing new.
+document.addEventListener("pointerover", (event) => held?.pointer === undefined && pointAt(event.target));
+document.addEventListener("focusin", (event) => keeping || pointAt(event.target));
+// A finger has left when it is lifted; what it touched stays lit until it touches something else.
+document.documentElement.addEventListener("pointerleave", (event) => event.pointerType === "touch" || pointAt(null));
 
 document.addEventListener("click", (event) => {
   const node = event.target.closest?.("[data-link]");
-  if (!node || sim.watching || node.closest("svg")?.querySelector("[data-pick]")) return;
-  send({ type: "set", params: { selected: node.dataset.link } });
+  if (node) select(node.dataset.link);
 });
 
 let tidying = false;
 
 new MutationObserver(() => {
   keepFocus();
+  light();
   goLive();
   if (tidying) return;
   tidying = true;
@@ -331,7 +351,6 @@ new MutationObserver(() => {
     nameControls(document);
     markSliders();
     showBringing();
-    light();
     dismissSoftwareNotice();
   });
 }).observe(document.body, { childList: true, subtree: true });

@@ -37,6 +37,7 @@ class CameraScene:
             stage.link(spot, name)
         self.selected = stage.ball("/selected", 1.5 * SPOT, "held")
         self.lit = stage.ball("/lit", 1.4 * SPOT, "held")
+        self.lit.show(False)
         self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, ABOVE))
         self.labels = {
             point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
@@ -60,7 +61,6 @@ class CameraScene:
             label.show(p.show_labels and p.selected != point)
         for hint in self.hints:
             hint.show(p.show_labels)
-        self.lit.show(False)
 
     def point(self, name: str) -> None:
         """Light up the point that somebody points at in the picture or the table, or none."""

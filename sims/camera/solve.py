@@ -16,6 +16,7 @@ from geometry.camera import Camera, pan_tilt_roll
 from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
 from sims.camera.model import HEIGHT, WIDTH, CameraParams, CameraSolution, Frustum, Pixel
 from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES
+from sims.kit.pane import inside
 
 PICTURE_WIDTH = 1.2
 """Metres that the picture is wide where it stands in the scene; how far in front follows from the focal length."""
@@ -87,11 +88,6 @@ def _eye(p: CameraParams, camera: Camera, scale: float | None) -> tuple[Eye | No
     return weak_perspective(camera, POINTS) if p.projection == "weak" else AffineCamera(camera, scale), scale
 
 
-def _inside(u: float, v: float) -> bool:
-    """Whether a pixel is in the picture; one that doesn't exist (NaN) isn't."""
-    return -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
-
-
 def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
     found = []
     for name, axes, (u, v) in zip(NAMES, in_camera.tolist(), pixels.tolist(), strict=True):
@@ -99,7 +95,7 @@ def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
         found.append(
             {
                 "name": name, "world": PLACES[name], "camera": axes, "depth": axes[2], "pixel": pixel,
-                "in_image": _inside(u, v),
+                "in_image": inside(u, v, WIDTH, HEIGHT),
             }
         )  # fmt: skip
     return tuple(found)
@@ -127,7 +123,7 @@ def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
         found.append(
             {
                 "name": name, "role": role, "homogeneous": place if exists else None,
-                "pixel": (u, v) if u == u else None, "in_image": _inside(u, v),
+                "pixel": (u, v) if u == u else None, "in_image": inside(u, v, WIDTH, HEIGHT),
             }
         )  # fmt: skip
     return tuple(found)

@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.camera import Camera
 from sims.epipolar.model import CENTER, HEIGHT, WIDTH, Pixel, Place
-from sims.kit.pane import across
+from sims.kit.pane import across, inside
 
 PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""
@@ -117,7 +117,7 @@ def eye_drawn(
 
 def in_picture(u: float, v: float) -> bool:
     """Whether a pixel is within a picture's edges."""
-    return -0.5 <= u <= WIDTH - 0.5 and -0.5 <= v <= HEIGHT - 0.5
+    return inside(u, v, WIDTH, HEIGHT)
 
 
 def spots(pixels: Array, focal: float, near: float) -> Array:

@@ -68,6 +68,10 @@ class EpipolarParams(Params):
         False, title="Show all epipolar lines", description="The lines of all points, and not of the 3D point alone"
     )
     show_top: bool = switch(True, title="Show from above", description="A plan of the scene below the pictures")
+    selected: int = number(
+        1, 1, 12, step=1, title="Selected point", control="none",
+        description="The point that is marked everywhere, by its number; 1 is the 3D point. A click chooses another",
+    )  # fmt: skip
     noise: float = number(
         0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
         description="Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off",
@@ -90,6 +94,11 @@ class EpipolarParams(Params):
             if not (0.0 <= u <= LAST[0] and 0.0 <= v <= LAST[1]):
                 raise ValueError("outside the picture")
         return pick
+
+
+def title(number: int) -> str:
+    """What a point is called."""
+    return "P, the 3D point" if number == 1 else f"Point {number}"
 
 
 def read_pick(pick: str) -> tuple[Side, Pixel]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import lru_cache
 
 from geometry.arrays import Array
 from sims.epipolar.drawn import in_picture
-from sims.epipolar.model import CENTER, HEIGHT, LAST, WIDTH, EpipolarParams, Pixel, Side
+from sims.epipolar.model import HEIGHT, LAST, WIDTH, EpipolarParams, Pixel, Side, title
 from sims.epipolar.plan import plan
 from sims.epipolar.solution import EpipolarSolution
 from sims.epipolar.words import epipole_in_words
@@ -16,8 +15,8 @@ from sims.kit.palette import Palette
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 
-ARROW = 70.0
-"""Pixels that an arrow at the border is long."""
+FIRST = "1"
+"""What the 3D point is linked as; the others are by their numbers too."""
 
 
 def panes(p: EpipolarParams, s: EpipolarSolution, palette: Palette) -> Sequence[Pane]:
@@ -67,10 +66,10 @@ def _lines(
 ) -> None:
     other = "right" if side == "left" else "left"
     if p.show_all_lines and lines is not None:
-        for each in lines[1:].tolist():
-            picture.homogeneous_line(each, other, width=1)
+        for k, each in enumerate(lines[1:].tolist(), start=2):
+            picture.homogeneous_line(each, other, width=1, link=f"{k}")
     if line is not None:
-        picture.homogeneous_line(line.tolist(), other, width=2.5, dash="7 5")
+        picture.homogeneous_line(line.tolist(), other, width=2.5, dash="7 5", link=FIRST)
     estimated = s.estimate.line_left if side == "left" else s.estimate.line_right
     if p.noise > 0.0 and estimated is not None:
         picture.homogeneous_line(estimated.tolist(), "ink", width=1.5, dash="2 4")
@@ -80,9 +79,14 @@ def _lines(
 
 def _points(picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, pixels: Array) -> None:
     for k, (u, v) in enumerate(pixels.tolist()[1:], start=2):
+        chosen = k == p.selected
         if in_picture(u, v):
-            picture.dot((u, v), side, 5)
-            picture.text((u + 9, v - 7), f"{k}", side, size=20, fine=True)
+            picture.point(f"{k}", (u, v), title(k), side, chosen=chosen, label=f"{k}" if chosen else "")
+            if not chosen:
+                picture.text((u + 9, v - 7), f"{k}", side, size=20, fine=True)
+        elif u == u:
+            role = "held" if chosen else "ghost"
+            picture.outside((u, v, 1.0), role, f"{k}", link=f"{k}", title=title(k), chosen=chosen)
     if p.noise > 0.0:
         measured = s.estimate.measured_left if side == "left" else s.estimate.measured_right
         for u, v in measured.tolist():
@@ -93,36 +97,20 @@ def _points(picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side
 def _held(picture: Picture, pixel: Pixel, side: Side, letter: str) -> None:
     """The point that can be moved in its picture, or in which direction it is outside."""
     if in_picture(*pixel):
-        picture.handle(f"{side}_pixel", pixel, f"3D point in the {side} picture", letter)
+        picture.handle(f"{side}_pixel", pixel, f"3D point in the {side} picture", letter, link=FIRST)
     else:
-        _toward(picture, (pixel[0] - CENTER[0], pixel[1] - CENTER[1]), "held", letter)
+        picture.outside((*pixel, 1.0), "held", letter, link=FIRST, title=title(1))
 
 
 def _epipole(picture: Picture, epipole: Array, at: Pixel | None, letter: str) -> None:
-    if at is not None and in_picture(*at):
+    words = f"Epipole {letter}"
+    if at is None:  # parallel lines meet at both their ends
+        u, v, _ = epipole.tolist()
+        picture.outside((u, v, 0.0), "ink", letter, title=words)
+        picture.outside((-u, -v, 0.0), "ink", "", title=words)
+    elif in_picture(*at):
         picture.dot(at, "ink", 9, hollow=True)
         picture.dot(at, "ink", 3)
         picture.text((at[0] + 16, at[1] + 30), letter)
-        return
-    u, v, _ = epipole.tolist()
-    along = (u, v) if at is None else (at[0] - CENTER[0], at[1] - CENTER[1])
-    _toward(picture, along, "ink", letter if at is not None else f"{letter} ∞")
-    if at is None:  # parallel lines meet at both their ends
-        _toward(picture, (-along[0], -along[1]), "ink", "")
-
-
-def _toward(picture: Picture, along: Pixel, role: str, words: str) -> None:
-    """An arrow at the border to what is outside, seen from the middle of the picture."""
-    length = math.hypot(*along)
-    x, y = along[0] / length, along[1] / length
-    room = min(
-        (0.5 * size - 4.0) / abs(part) for part, size in ((x, WIDTH), (y, HEIGHT)) if abs(part) > 1e-9
-    )  # fmt: skip
-    tip, tail = ((CENTER[0] + t * x, CENTER[1] + t * y) for t in (room, room - ARROW))
-    picture.arrow(tail, tip, role, width=2.5)
-    picture.text((tail[0] - 24 * x, tail[1] - 18 * y + 9), words, role, anchor=_anchor(x), fine="∞" in words)
-
-
-def _anchor(x: float) -> str:
-    """Words end where the arrow begins."""
-    return "end" if x > 0.5 else "start" if x < -0.5 else "middle"
+    else:
+        picture.outside((*at, 1.0), "ink", letter, title=words)

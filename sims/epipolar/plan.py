@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 from sims.epipolar.drawn import EyeDrawn, distance
-from sims.epipolar.model import EpipolarParams, Pixel, Side
+from sims.epipolar.model import EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
@@ -41,16 +40,16 @@ def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
     _eye(picture, p, "left", s.drawn.left, p.left_pan)
     _eye(picture, p, "right", s.drawn.right, p.right_pan)
     picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
-    for x, y, _ in s.points[1:].tolist():
-        picture.dot(at(x, y), "ink", 4)
-    held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, "P, the 3D point")
-    for (name, place, words), letter in zip(held, "LRP", strict=True):
+    for k, (x, y, _) in enumerate(s.points[1:].tolist(), start=2):
+        chosen = k == p.selected
+        picture.point(f"{k}", at(x, y), title(k), chosen=chosen, label=f"{k}" if chosen else "")
+    held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, title(1))
+    for (name, place, words), letter, link in zip(held, "LRP", ("", "", "1"), strict=True):
         spot = at(*place[:2])
         if 0.0 <= spot[0] < WIDTH and 0.0 <= spot[1] < HEIGHT:
-            picture.handle(
-                f"plan_{name}", spot, words, letter, where=f"X {figure(place[0], 2)}, Y {figure(place[1], 2)} metres"
-            )
-    return replace(picture.pane("grid of 1\u2009m"), wide=True)
+            where = f"X {figure(place[0], 2)}, Y {figure(place[1], 2)} metres"
+            picture.handle(f"plan_{name}", spot, words, letter, where=where, link=link)
+    return picture.pane("grid of 1\u2009m", wide=True)
 
 
 @lru_cache(maxsize=1)

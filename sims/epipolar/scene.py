@@ -8,14 +8,16 @@ import numpy as np
 import trimesh
 
 from geometry.arrays import Array
-from sims.epipolar.drawn import EyeDrawn, Segments
-from sims.epipolar.model import OTHERS, EpipolarParams, Side
+from sims.epipolar.drawn import EyeDrawn, Segment, Segments
+from sims.epipolar.model import OTHERS, EpipolarParams, Place, Side
 from sims.epipolar.solution import EpipolarSolution
 from sims.epipolar.words import short_trouble
 from sims.kit.camera_figure import CameraFigure
 from sims.kit.readout import quantity
 from sims.kit.stage import Stage
 
+SPOT = 0.045
+ORIGIN: Place = (0.0, 0.0, 0.0)
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
@@ -31,15 +33,24 @@ class EpipolarScene:
         sheet = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
         self.plane = stage.mesh("/plane", sheet, "held", opacity=0.16, side="double", flat=True)
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
-        self.others = stage.cloud("/others", OTHERS[:0], "ink", size=0.045)
+        self.others = [stage.ball(f"/points/{k}", SPOT, "ink") for k in range(2, len(OTHERS) + 2)]
+        for k, (ball, place) in enumerate(zip(self.others, OTHERS.tolist(), strict=True), start=2):
+            ball.pose(position=place)
+            stage.link(ball, f"{k}")
         self.drops = stage.lines("/drops", np.zeros((2, 3)), "ghost", width=1.0)
         self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
-        self.point = stage.grip("/point", 0.06, halo=2.4)
+        self.held = stage.grip("/point", 0.06, halo=2.4)
+        stage.link(self.held, "1")
         stage.label("/point/label", "P", (0.0, 0.0, 0.26))
         self.drop = stage.lines("/point/drop", np.zeros((2, 3)), "ghost", width=1.2)
         self.pick_ray = stage.lines("/pick_ray", np.zeros((2, 3)), "held", width=3.0)
+        self.selected = Mark(stage, "/selected", width=1.8)
+        self.selected_label = stage.label("/selected/ball/label", "", (0.0, 0.0, 0.22))
+        self.lit = Mark(stage, "/lit", width=3.5)
         self.warning = stage.label("/warning", "")
         self.shown = 0
+        self.places: dict[str, Place] = {}
+        self.centers: Segment = (ORIGIN, ORIGIN)
 
     def draw(self, p: EpipolarParams, s: EpipolarSolution) -> None:
         for drawn, eye, grip in zip((s.drawn.left, s.drawn.right), self.eyes, self.grips, strict=True):
@@ -47,6 +58,7 @@ class EpipolarScene:
             grip.pose(position=drawn.center)
         self._baseline(p, s)
         self._points(p)
+        self._linked(p, s)
         self.rays.draw(((p.left, p.point), (p.right, p.point)))
         self.plane.show(p.show_plane and s.drawn.plane is not None)
         if s.drawn.plane is not None:
@@ -68,15 +80,43 @@ class EpipolarScene:
         self.baseline_label.text(f"baseline {quantity(s.baseline, 'm', 2)}")
 
     def _points(self, p: EpipolarParams) -> None:
-        self.point.pose(position=p.point)
+        self.held.pose(position=p.point)
         self.drop.stroke((0.0, 0.0, 0.0), (0.0, 0.0, -p.point[2]))
-        self.others.show(p.points > 1)
         self.drops.show(p.points > 1)
-        if p.points != self.shown and p.points > 1:
-            self.shown = p.points
+        if p.points == self.shown:
+            return
+        self.shown = p.points
+        for k, ball in enumerate(self.others, start=2):
+            ball.show(k <= p.points)
+        if p.points > 1:
             places = OTHERS[: p.points - 1]
-            self.others.points(places)
             self.drops.pieces(np.stack([places, places * (1.0, 1.0, 0.0)], axis=1))
+
+    def _linked(self, p: EpipolarParams, s: EpipolarSolution) -> None:
+        self.centers = p.left, p.right
+        self.places = {f"{k}": (x, y, z) for k, (x, y, z) in enumerate(s.points.tolist(), start=1)}
+        self.selected.draw(self.places.get(f"{p.selected}") if p.selected > 1 else None, self.centers)
+        self.selected_label.text(f"point {p.selected}")
+
+    def point(self, name: str) -> None:
+        """Light up the point that somebody points at in a picture or the table, or none."""
+        self.lit.draw(self.places.get(name), self.centers)
+
+
+class Mark:
+    """A point that is selected or lit: a ball in its place, and its lines of sight from both centres."""
+
+    def __init__(self, stage: Stage, path: str, width: float) -> None:
+        self.node = stage.group(path)
+        self.node.show(False)
+        self.ball = stage.ball(f"{path}/ball", 1.9 * SPOT, "held")
+        self.rays = stage.strokes(f"{path}/rays", ("left", "right"), width=width)
+
+    def draw(self, place: Place | None, centers: Segment) -> None:
+        self.node.show(place is not None)
+        if place is not None:
+            self.ball.pose(position=place)
+            self.rays.draw([(center, place) for center in centers])
 
 
 class Eye:

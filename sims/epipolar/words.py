@@ -48,7 +48,25 @@ def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
     yield from _matrices(s)
     yield from _lines(p, s)
     yield from _epipoles(s)
+    yield _points(p, s)
     yield from _estimate(p, s)
+
+
+def _points(p: EpipolarParams, s: EpipolarSolution) -> Table:
+    """Pixels of all points that are shown."""
+    rows: list[tuple[str, ...]] = [("point", "u", "v", "u′", "v′")]
+    for k, (left, right) in enumerate(zip(s.pixels_left.tolist(), s.pixels_right.tolist(), strict=True), start=1):
+        rows.append(("P" if k == 1 else f"{k}", *_cells(*left), *_cells(*right)))
+    numbers = [f"{k}" for k in range(1, len(rows))]
+    words = "Points: left and right pixel; in brackets what is outside the picture"
+    return Table(words, rows, numbers, f"{p.selected}")
+
+
+def _cells(u: float, v: float) -> tuple[str, str]:
+    if u != u:
+        return "–", "–"
+    across, down = figure(u, 1), figure(v, 1)
+    return (across, down) if in_picture(u, v) else (f"({across})", f"({down})")
 
 
 def _status(s: EpipolarSolution) -> Iterator[Note]:

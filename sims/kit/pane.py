@@ -34,22 +34,21 @@ class Pane:
 class Picture:
     """Collects SVG in pixel coordinates; what is outside the frame is clipped."""
 
-    def __init__(
-        self, name: str, title: str, width: int = 640, height: int = 480, *, under: Picture | None = None
-    ) -> None:
-        """`under` is drawn first: what stays the same needn't be made again."""
+    def __init__(self, name: str, title: str, width: int = 640, height: int = 480) -> None:
         self.name, self.title = name, title
         self.width, self.height = width, height
-        self._parts: list[str] = list(under._parts) if under else []
-        self._over: list[str] = list(under._over) if under else []
+        self._parts: list[str] = []
+        self._over: list[str] = []
         self._ground = 'class="s3-frame"'
 
-    def line(self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "") -> None:
-        """A straight stroke; `dash` as in SVG, `role` a colour of the palette."""
+    def line(
+        self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "", link: str = ""
+    ) -> None:
+        """A straight stroke; `dash` as in SVG, `role` a colour of the palette. It lights up where `link` does."""
         dashed = f' stroke-dasharray="{dash}"' if dash else ""
         self._parts.append(
             f'<line x1="{a[0]:.2f}" y1="{a[1]:.2f}" x2="{b[0]:.2f}" y2="{b[1]:.2f}" stroke="var(--{role})"'
-            f' stroke-width="{width}"{dashed}{css} vector-effect="non-scaling-stroke"/>'
+            f' stroke-width="{width}"{dashed}{css}{_linked(link)} vector-effect="non-scaling-stroke"/>'
         )
 
     def curve(self, points: Iterable[Point], role: str, *, width: float = 2) -> None:
@@ -71,21 +70,21 @@ class Picture:
                 ' vector-effect="non-scaling-stroke"/>'
             )
 
-    def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "") -> None:
+    def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "", link: str = "") -> None:
         """The line a x + b y + c = 0 across the whole picture."""
         ends = across(line, self.width, self.height)
         if ends:
-            self.line(ends[0], ends[1], role, width=width, dash=dash)
+            self.line(ends[0], ends[1], role, width=width, dash=dash, link=link)
 
     def arrow(self, a: Point, b: Point, role: str, *, width: float = 2) -> None:
         """A vector from a to b."""
         self.line(a, b, role, width=width, css=f' marker-end="url(#{self.name}-tip)"')
 
-    def cross(self, at: Point, role: str, size: float = 9) -> None:
+    def cross(self, at: Point, role: str, size: float = 9, *, link: str = "") -> None:
         """An × mark."""
         x, y = at[0], at[1]
-        self.line((x - size, y - size), (x + size, y + size), role, width=2.5)
-        self.line((x - size, y + size), (x + size, y - size), role, width=2.5)
+        self.line((x - size, y - size), (x + size, y + size), role, width=2.5, link=link)
+        self.line((x - size, y + size), (x + size, y - size), role, width=2.5, link=link)
 
     def dot(self, at: Point, role: str, radius: float = 6, *, hollow: bool = False) -> None:
         """A round mark; hollow to show what is behind it."""
@@ -113,13 +112,14 @@ class Picture:
             ' click a place, or press Enter for the middle."'
         )
 
-    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "") -> None:
+    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "") -> None:
         """A point that pointer and keyboard can move; the session hears of it under `name`.
 
-        `where` says its place where that isn't the pixel.
+        `where` says its place where that isn't the pixel. It lights up with what else `link` is, and a click on it
+        selects that.
         """
         self._over.append(
-            f'<g data-handle="{name}" data-x="{float(at[0])!r}" data-y="{float(at[1])!r}" tabindex="0"'
+            f'<g data-handle="{name}"{_linked(link)} data-x="{float(at[0])!r}" data-y="{float(at[1])!r}" tabindex="0"'
             f' role="application" aria-roledescription="movable point"'
             f' aria-label="{escape(label)}: {escape(where) or f"{at[0]:.1f}, {at[1]:.1f} pixels"}.'
             f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
@@ -129,13 +129,17 @@ class Picture:
 
     def shows(self, at: Point) -> bool:
         """Whether a place is inside the frame."""
-        return -0.5 <= at[0] <= self.width - 0.5 and -0.5 <= at[1] <= self.height - 0.5
+        return inside(at[0], at[1], self.width, self.height)
 
     def point(
-        self, link: str, at: Point, title: str, role: str = "ink", *, chosen: bool = False, label: str = ""
-    ) -> None:
-        """A named point: where else `link` stands (table, other pictures) lights up with it, and a click selects it."""
-        kind = "s3-point s3-selected" if chosen else "s3-point"
+        self, link: str, at: Point, title: str, role: str = "ink", *, chosen: bool = False, label: str = "",
+        quiet: bool = False,
+    ) -> None:  # fmt: skip
+        """A named point: where else `link` stands (table, other pictures) lights up with it, and a click selects it.
+
+        A quiet one is only seen while it is lit.
+        """
+        kind = "s3-point s3-selected" if chosen else "s3-point s3-quiet" if quiet else "s3-point"
         ring = '<circle class="s3-ring" r="13"/>' if chosen else ""
         side, anchor = (-18, "end") if at[0] > 0.6 * self.width else (18, "start")
         words = (
@@ -170,10 +174,10 @@ class Picture:
             if words
             else ""
         )
-        linked = f' data-link="{safe(link)}"' if link else ""
         kind = "s3-point s3-selected" if chosen else "s3-point"
         self._over.append(
-            f'<g{linked} class="{kind}" transform="translate({x:.2f} {y:.2f})"><title>{safe(title or words)}</title>'
+            f'<g{_linked(link)} class="{kind}" transform="translate({x:.2f} {y:.2f})">'
+            f"<title>{safe(title or words)}</title>"
             f'<path class="s3-spot" d="{head}" fill="var(--{role})"'
             f' transform="rotate({math.degrees(math.atan2(dy, dx)):.1f})"/>{text}</g>'
         )
@@ -184,7 +188,7 @@ class Picture:
         other._parts, other._over, other._ground = [*self._parts], [*self._over], self._ground
         return other
 
-    def pane(self, note: str = "") -> Pane:
+    def pane(self, note: str = "", *, wide: bool = False) -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
@@ -198,7 +202,16 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}</svg>"
         )
-        return Pane(self.name, self.title, svg, note)
+        return Pane(self.name, self.title, svg, note, wide)
+
+
+def _linked(link: str) -> str:
+    return f' data-link="{safe(link)}"' if link else ""
+
+
+def inside(x: float, y: float, width: float, height: float) -> bool:
+    """Whether a place is in a picture of so many pixels; one that doesn't exist (NaN) isn't."""
+    return -0.5 <= x <= width - 0.5 and -0.5 <= y <= height - 0.5
 
 
 def across(line: Point, width: float, height: float) -> tuple[Point, Point] | None:

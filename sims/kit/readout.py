@@ -91,13 +91,15 @@ class Table:
     """A small table of words and numbers; the first row is its head.
 
     `links` names what each further row stands for: it lights up with its mark in the pictures, and is `selected` by
-    a click or by the button that its first cell becomes.
+    a click or by the button that its first cell becomes. `lights` does so for the rows after these, which only light
+    up.
     """
 
     note: str
     rows: Sequence[Sequence[str]]
     links: Sequence[str] = ()
     selected: str = ""
+    lights: Sequence[str] = ()
 
     def html(self) -> str:
         head, *body = self.rows
@@ -108,8 +110,10 @@ class Table:
     def _row(self, k: int, cells: Sequence[str]) -> str:
         name, *rest = escape("\n".join(cells)).split("\n")  # in one go: a table has many cells
         numbers = "".join([f"<td>{cell}</td>" for cell in rest])
-        if not self.links:
-            return f'<tr><th scope="row">{name}</th>{numbers}</tr>'
+        if k >= len(self.links):
+            further = k - len(self.links)
+            light = f' data-link="{escape(self.lights[further])}"' if further < len(self.lights) else ""
+            return f'<tr{light}><th scope="row">{name}</th>{numbers}</tr>'
         chosen = self.links[k] == self.selected
         button = f'<button type="button" aria-pressed="{"true" if chosen else "false"}">{name}</button>'
         kind = ' class="s3-selected"' if chosen else ""

@@ -24,7 +24,11 @@ S_in = TypeVar("S_in", contravariant=True)
 
 
 class Scene(Protocol[P_in, S_in]):
-    """Viser nodes, built once for one viewer; `draw` assigns what follows from the state."""
+    """Viser nodes, built once for one viewer; `draw` assigns what follows from the state.
+
+    One whose things are linked with pictures and tables also has `point(name)`: it lights up what somebody points at,
+    or nothing for a name that it doesn't know. It is told again after each `draw`.
+    """
 
     def __init__(self, stage: Stage) -> None: ...
 
@@ -122,6 +126,8 @@ class Sim(Generic[P, S]):
     view_of: Callable[[P], View] | None = None
     """The first view of a state, where it isn't always `view`."""
     panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
+    selects: str = "selected"
+    """The parameter that a click on what is linked across scene, pictures and tables sets."""
     handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
     typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)

@@ -32,6 +32,8 @@ class Host(Protocol):
 
     def act(self, name: str) -> None: ...
 
+    def select(self, name: str) -> None: ...
+
     def drag(self, name: str, place: tuple[float, ...]) -> None: ...
 
 
@@ -150,6 +152,8 @@ class Viewer:
         if look.controls:
             self._readouts = self._add_readouts()
         self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked, self._pointed))
+        self._light: Callable[[str], None] | None = getattr(self.scene, "point", None)
+        self._lit = ""
         self._live = False
 
     def input(self, control: str, value: Any) -> bool:
@@ -165,6 +169,8 @@ class Viewer:
         """Show a state; only what differs is sent, in one window."""
         with self.client.atomic():
             self.scene.draw(params, solution)
+            if self._light is not None and self._lit:
+                self._light(self._lit)
             if not self._live:
                 self._live = True
                 self.client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window
@@ -185,10 +191,11 @@ class Viewer:
         self.client.flush()
 
     def point(self, name: str) -> None:
-        """Light up what somebody points at elsewhere, in scenes that know how; it passes with the next drawing."""
-        if (light := getattr(self.scene, "point", None)) is not None:
+        """Light up what somebody points at elsewhere, in scenes that know how; an empty name is nothing."""
+        self._lit = name
+        if self._light is not None and self._live:
             with self.client.atomic():
-                light(name)
+                self._light(name)
             self.client.flush()
 
     def _regions(self, params: Params) -> str:
@@ -313,9 +320,8 @@ class Viewer:
         return TypedPlace(typed, handle)
 
     def _picked(self, name: str) -> None:
-        with suppress(ValueError):
-            if not self.look.watching:
-                self._host.change({"selected": name})
+        if not self.look.watching:
+            self._host.select(name)
 
     def _pointed(self, name: str, ray: tuple[float, ...]) -> None:
         if not self.look.watching:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -47,7 +46,7 @@ SCREEN = _screen()
 
 def panes(p: QuaternionParams, s: QuaternionSolution, palette: Palette) -> list[Pane]:
     """The ball with q, −q and the way from start to target."""
-    picture = Picture("ball", TITLE, WIDTH, HEIGHT, under=BALL)
+    picture = BALL.copy()
     picture.curve(places(s.ball_path), "ink", width=3)
     _mark(picture, s.ball_minus_q, -s.n, "−q", hollow=True)
     _mark(picture, s.ball_q, s.n, "q")
@@ -57,7 +56,7 @@ def panes(p: QuaternionParams, s: QuaternionSolution, palette: Palette) -> list[
         _name(picture, s.ball_target, "q s", "ink")
     if s.ball_now is not None and not s.at_target and not s.at_start:
         picture.dot(pixel(s.ball_now), "ink", 5)
-    return [replace(picture.pane(_note(s)), wide=True)]
+    return [picture.pane(_note(s), wide=True)]
 
 
 def _note(s: QuaternionSolution) -> str:

@@ -36,6 +36,7 @@ SIM = Sim(
         Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", model.new_sample),
         Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", model.switch_noise),
     ),
+    selects="method",
     handles={"/point": model.hold_point, "left_uv": model.hold_left, "right_uv": model.hold_right},
     typed=(
         Typed(

@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
-from geometry.arrays import Array
 from geometry.triangulation import depth_sigma
 from sims.kit.palette import Palette
 from sims.kit.pane import Pane, Picture
 from sims.kit.plot import Plot, room
 from sims.kit.readout import quantity
-from sims.triangulation.model import HEIGHT, WIDTH, Pixel, TriangulationParams, TriangulationSolution
+from sims.triangulation.model import HEIGHT, NAMES, WIDTH, Method, Pixel, TriangulationParams, TriangulationSolution
 
+Side = Literal["left", "right"]
 MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 LONG_ENOUGH = 75.0
 """Pixels that the arrow of an error should be long."""
@@ -28,17 +29,7 @@ def panes(p: TriangulationParams, s: TriangulationSolution, palette: Palette) ->
     """Both pictures and the plot."""
     chosen = s.by_method[p.method]
     times = magnification(chosen.reprojection_left, chosen.reprojection_right)
-    return (
-        _picture(
-            "left", "right", p.left_uv, s.measured_left, s.line_left, chosen.pixel_left, chosen.reprojection_left,
-            times, noisy=p.noise > 0.0,
-        ),
-        _picture(
-            "right", "left", p.right_uv, s.measured_right, s.line_right, chosen.pixel_right, chosen.reprojection_right,
-            times, noisy=p.noise > 0.0,
-        ),
-        _plot(p, s),
-    )  # fmt: skip
+    return _picture(p, s, "left", times), _picture(p, s, "right", times), _plot(p, s)
 
 
 def magnification(left: float | None, right: float | None) -> int:
@@ -49,21 +40,53 @@ def magnification(left: float | None, right: float | None) -> int:
     return next((m for m in MAGNIFICATIONS if m * longest >= LONG_ENOUGH), MAGNIFICATIONS[-1])
 
 
-def _picture(
-    side: str, other: str, held: Pixel, measured: Pixel, line: Array, found: Pixel | None, error: float | None,
-    times: int, *, noisy: bool,
-) -> Pane:  # fmt: skip
+def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, times: int) -> Pane:
+    left = side == "left"
+    other: Side = "right" if left else "left"
+    held, measured = (p.left_uv, s.measured_left) if left else (p.right_uv, s.measured_right)
+    seen = {
+        name: (result.pixel_left, result.reprojection_left) if left else (result.pixel_right, result.reprojection_right)
+        for name, result in s.by_method.items()
+    }
     picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
-    picture.homogeneous_line(line.tolist(), other, dash="7 5")
-    if noisy:
-        picture.cross(measured, side)
+    picture.homogeneous_line((s.line_left if left else s.line_right).tolist(), other, dash="7 5", link=other)
+    if p.noise > 0.0:
+        _measured(picture, measured, side)
+    if s.true_point is not None:
+        picture.point("true", held, "True point", "held", quiet=True)
+    for name, (at, _) in seen.items():
+        if at is not None:
+            _reprojected(picture, name, at, chosen=name == p.method)
+    found, error = seen[p.method]
     if found is not None and error is not None:
-        picture.dot(found, "ink", 10, hollow=True)
-        if error >= SEEN_ERROR:
-            tip = [m + times * (f - m) for m, f in zip(measured, found, strict=True)]
-            picture.arrow(measured, tip, "ink", width=2.5)
-    picture.handle(f"{side}_uv", held, f"{side.capitalize()} point", side[0].upper())
+        _error(picture, measured, found, error, times)
+    picture.handle(f"{side}_uv", held, f"{side.capitalize()} point", side[0].upper(), link=side)
     return picture.pane(_error_in_words(error, times))
+
+
+def _measured(picture: Picture, measured: Pixel, side: Side) -> None:
+    """The held point with its noise."""
+    if picture.shows(measured):
+        picture.cross(measured, side, link=side)
+    else:
+        picture.outside((*measured, 1.0), side, "", link=side, title=f"{side.capitalize()} point with noise")
+
+
+def _reprojected(picture: Picture, name: Method, at: Pixel, *, chosen: bool) -> None:
+    """Where the point of a method is seen; if it isn't the result, only while it is lit."""
+    words = f"The {NAMES[name]} point, seen from here"
+    if picture.shows(at):
+        picture.point(name, at, words, quiet=not chosen)
+    elif chosen:
+        picture.outside((*at, 1.0), "ink", "", link=name, title=words)
+
+
+def _error(picture: Picture, measured: Pixel, found: Pixel, error: float, times: int) -> None:
+    """A ring round where the result is seen, and the way there from what was measured."""
+    picture.dot(found, "ink", 10, hollow=True)
+    if error >= SEEN_ERROR:
+        tip = [m + times * (f - m) for m, f in zip(measured, found, strict=True)]
+        picture.arrow(measured, tip, "ink", width=2.5)
 
 
 def _error_in_words(error: float | None, times: int) -> str:

@@ -54,6 +54,8 @@ class TriangulationScene:
         self.true_label = stage.label("/point/label", "true point", (0.0, 0.0, 0.1), anchor="bottom-right")
         self.region = Region(stage, "/uncertainty", 0.004, opacity=0.45)
         self.closeup = CloseUp(stage)
+        self.lit = stage.ball("/point/lit", 1.3 * RADIUS, "held")
+        self.lit.show(False)
         self.warning = stage.label("/warning", "")
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
@@ -72,6 +74,15 @@ class TriangulationScene:
         self._gap(s)
         self._in_words(p, s, at, self.closeup.draw(p, s))
         self._warn(s)
+
+    def point(self, name: str) -> None:
+        """Light up what somebody points at: an image point's ray, the point of a method, or the true point."""
+        for eye in self.eyes:
+            eye.light(name)
+        for method, shape in self.points.items():
+            shape.lit.show(method == name)
+        self.lit.show(name == "true")
+        self.closeup.point(name)
 
     def _held(self, s: TriangulationSolution) -> None:
         self.grip.show(s.target is not None)
@@ -113,11 +124,15 @@ class Eye:
 
     def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str) -> None:
         path = f"/{name}"
+        self.name = name
         self.figure = CameraFigure(stage, path, name, letter)
         stage.lines(f"{path}/post", [(0.0, 0.08, -0.12), (0.0, 1.0, -0.12)], "ghost", width=1.2)
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
         self.ray = stage.lines(f"{path}/ray", np.zeros((2, 3)), name, width=1.8)
         self.back = stage.lines(f"{path}/back", np.zeros((2, 3)), name, width=1.5, dash=(0.08, 0.08))
+        self.lit = stage.lines(f"{path}/lit", np.zeros((2, 3)), name, width=6.0)
+        self.lit.show(False)
+        self.end = FAR_AWAY
 
     def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
         self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
@@ -127,8 +142,15 @@ class Eye:
         self.pixel.pose(position=(x * near, y * near, near))
         self.pixel.scale(cameras.size)
         far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
-        self.ray.stroke((0.0, 0.0, 0.0), (x * far, y * far, far))
+        self.end = x * far, y * far, far
+        self.ray.stroke((0.0, 0.0, 0.0), self.end)
         self.back.show(s.status == "behind")
         if s.status == "behind":
             back = max(0.0 if s.closest_points is None else s.closest_points.item(0, 1), -BACKWARD)
             self.back.path([(0.0, 0.0, 0.0), (x * back, y * back, back)])
+
+    def light(self, name: str) -> None:
+        """Make the ray thick if it has that name."""
+        self.lit.show(name == self.name)
+        if name == self.name:
+            self.lit.stroke((0.0, 0.0, 0.0), self.end)

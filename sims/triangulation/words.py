@@ -23,6 +23,7 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     if s.point is not None and s.point[1] < VERY_FAR:
         yield Formula(f"Point by the {NAMES[p.method]} method", symbol("X"), row(s.point.tolist()), "m")
     yield _methods(p, s)
+    yield _images(p, s)
     yield Formula("Disparity: left u minus right u", symbol("d"), mathml(s.disparity, 2), "px")
     if s.depth_from_disparity is not None:
         yield Formula(
@@ -62,8 +63,23 @@ def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
         if found.point is not None and s.point is not None:
             apart = _length(math.dist(found.point, s.point))
         cells = [figure(e, 3) if e is not None else "–" for e in errors]
-        rows.append((f"{words} ✓" if name == p.method else words, cells[0], cells[1], cells[2], apart))
-    return Table("Reprojection error in pixels, and distance from the result", rows)
+        rows.append((words, cells[0], cells[1], cells[2], apart))
+    true = () if s.true_point is None else ("true",)
+    if s.true_point is not None:
+        a, b = math.dist(s.measured_left, p.left_uv), math.dist(s.measured_right, p.right_uv)
+        cells = [figure(e, 3) for e in (a, b, math.hypot(a, b) / math.sqrt(2.0))]
+        apart = "–" if s.point is None else _length(math.dist(s.true_point, s.point))
+        rows.append(("true point", cells[0], cells[1], cells[2], apart))
+    words = "Reprojection error in pixels, and distance from the result"
+    return Table(words, rows, tuple(NAMES), p.method, lights=true)
+
+
+def _images(p: TriangulationParams, s: TriangulationSolution) -> Table:
+    rows = [("point", "u", "v")]
+    for name, (u, v) in (("L, left", s.measured_left), ("R, right", s.measured_right)):
+        rows.append((name, figure(u, 2), figure(v, 2)))
+    words = "Image points in pixels, with their noise" if p.noise > 0.0 else "Image points in pixels"
+    return Table(words, rows, lights=("left", "right"))
 
 
 def _length(metres: float) -> str:

@@ -327,6 +327,8 @@ AFTER_HELLO: list[str] = [
     '{"type": "point"}',
     '{"type": "point", "name": ["roof"]}',
     '{"type": "point", "name": "' + "x" * 101 + '"}',
+    '{"type": "select", "name": 3}',
+    '{"type": "select", "name": "' + "x" * 101 + '"}',
     '{"type": "action", "name": "' + "x" * 101 + '"}',
     '{"type": "handle", "name": "/grip", "x": NaN, "y": 0}',
     '{"type": "handle", "name": "/grip", "x": 1e10, "y": 0}',

@@ -30,7 +30,7 @@ from sims import by_slug
 from sims.kit.params import Params, options
 from sims.kit.readout import figure
 from sims.kit.viewer import worded
-from tests.frames import Message, SceneModel, decode_message
+from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
 
 T = TypeVar("T")
 PATIENCE = 120.0
@@ -47,6 +47,11 @@ VISERS_OWN_WORDS = (
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
 FORMULAS = """() => [...document.querySelectorAll(".s3-readouts math")].map(formula => [
     formula.textContent.split("=")[0], ...[...formula.querySelectorAll("mn")].map(n => n.textContent)])"""
+
+
+LIT = (
+    """() => [...document.querySelectorAll(".s3-lit")].map((node) => [node.tagName.toLowerCase(), node.dataset.link])"""
+)
 
 
 class Witness:
@@ -202,6 +207,33 @@ class Learner:
         assert body["params"] == self.params
         return body["solution"]
 
+    # ---- the scene, and what is linked with it
+
+    def place(self, world: npt.ArrayLike) -> tuple[float, float]:
+        """Pixel on the page where a point of the world is."""
+        canvas = box(self.frame.locator("canvas[data-engine]"))
+        return project(world, self.sockets.camera, canvas)
+
+    def place_of(self, node: str) -> tuple[float, float]:
+        """Pixel on the page of the middle of a node of the scene."""
+        return self.place(self.scene.world_pose(node)[:3, 3])
+
+    def click_on(self, node: str) -> None:
+        """Click on a node of the scene."""
+        x, y = self.place_of(node)
+        self.page.mouse.move(x - 2, y)
+        self.page.mouse.click(x, y)
+
+    def lights(self, name: str, tags: str) -> bool:
+        """Whether all that is lit up in pictures and tables has that name; `tags` says what it is: "g g tr"."""
+        lit: list[list[str]] = self.frame.evaluate(LIT)
+        return sorted(lit) == sorted([tag, name] for tag in tags.split())
+
+    def pressed(self, name: str) -> bool:
+        """Whether the row of that name, and no other of its table, is the selected one."""
+        row = self.frame.locator(f'tr.s3-selected[data-link="{name}"]')
+        return row.locator('button[aria-pressed="true"]').count() == 1 == self.frame.locator("tr.s3-selected").count()
+
     # ---- the panel
 
     def control(self, role: Any, name: str) -> Locator:
@@ -302,3 +334,15 @@ def box(locator: Locator) -> dict[str, float]:
     found = locator.bounding_box()
     assert found is not None, f"{locator} isn't on the page"
     return {"x": found["x"], "y": found["y"], "width": found["width"], "height": found["height"]}
+
+
+def project(world: npt.ArrayLike, camera: Message, canvas: dict[str, float]) -> tuple[float, float]:
+    """Pinhole projection into a canvas; the camera looks along its z, x right, y down, `fov` from top to bottom."""
+    pose = SceneNode("", "", "", False, {}, tuple(camera["wxyz"]), ORIGIN).pose[:3, :3]
+    x, y, z = pose.T @ (np.asarray(world, dtype=float) - camera["position"])
+    focal = canvas["height"] / 2 / np.tan(camera["fov"] / 2)
+    assert z > 0, "the place is behind the viewer"
+    return (
+        float(canvas["x"] + canvas["width"] / 2 + focal * x / z),
+        float(canvas["y"] + canvas["height"] / 2 + focal * y / z),
+    )

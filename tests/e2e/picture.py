@@ -11,8 +11,7 @@ from PIL import Image
 from playwright.sync_api import Page
 
 from sims.kit.palette import LIGHT, Palette, rgb
-from tests.e2e.learner import Learner, box
-from tests.frames import ORIGIN, Message, SceneNode
+from tests.e2e.learner import Learner, box, project
 
 Array = npt.NDArray[np.float64]
 GREY = 0.25
@@ -54,18 +53,6 @@ class Picture:
         hue, saturation, _ = _hsv(pixel.tolist())
         gap = abs(hue - wanted) % 360.0
         return saturation > GREY and min(gap, 360.0 - gap) < ALIKE
-
-
-def project(world: npt.ArrayLike, camera: Message, canvas: dict[str, float]) -> tuple[float, float]:
-    """Pinhole projection into a canvas; the camera looks along its z, x right, y down, `fov` from top to bottom."""
-    pose = SceneNode("", "", "", False, {}, tuple(camera["wxyz"]), ORIGIN).pose[:3, :3]
-    x, y, z = pose.T @ (np.asarray(world, dtype=float) - camera["position"])
-    focal = canvas["height"] / 2 / np.tan(camera["fov"] / 2)
-    assert z > 0, "the place is behind the viewer"
-    return (
-        float(canvas["x"] + canvas["width"] / 2 + focal * x / z),
-        float(canvas["y"] + canvas["height"] / 2 + focal * y / z),
-    )
 
 
 def screenshot(page: Page) -> npt.NDArray[np.uint8]:

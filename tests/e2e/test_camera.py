@@ -10,13 +10,11 @@ import numpy.typing as npt
 from sims.camera.solve import LIFT
 from sims.camera.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
-from tests.e2e.picture import project
+from tests.e2e.learner import Learner
 
 Array = npt.NDArray[np.float64]
 MARKS = """() => Object.fromEntries([...document.querySelectorAll("svg [data-link]")].map(
     (mark) => [mark.dataset.link, mark.getAttribute("transform").match(/[-\\d.]+/g).map(Number)]))"""
-LIT = """() => [...document.querySelectorAll(".s3-lit")].map((node) => [node.tagName, node.dataset.link])"""
 
 
 def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
@@ -38,12 +36,6 @@ def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
         return solution
 
     return learner.until(said)
-
-
-def place_of(learner: Learner, node: str) -> tuple[float, float]:
-    """Pixel on the page of the middle of a node."""
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
-    return project(learner.scene.world_pose(node)[:3, 3], learner.sockets.camera, canvas)
 
 
 def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: Classroom) -> None:
@@ -73,7 +65,7 @@ def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom:
     button = frame.get_by_role("button", name="Left cube, corner", exact=True)
     button.scroll_into_view_if_needed()
     button.hover()
-    learner.until(lambda: sorted(frame.evaluate(LIT)) == [["TR", "cube-left"], ["g", "cube-left"]])
+    learner.until(lambda: learner.lights("cube-left", "g tr"))
     learner.until(lambda: learner.scene.visible("/lit"))
     np.testing.assert_allclose(learner.scene.world_pose("/lit")[:3, 3], PLACES["cube-left"])
     assert learner.params["selected"] == "roof-near", "pointing selects nothing"
@@ -86,27 +78,24 @@ def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom:
 
     frame.locator('svg [data-link="roof-far"] .s3-spot').click()
     agree(learner, selected="roof-far")
-    x, y = place_of(learner, "/points/far-post")
-    learner.page.mouse.move(x - 2, y)
-    learner.page.mouse.click(x, y)
+    learner.click_on("/points/far-post")
     agree(learner, selected="far-post")
-    pressed = frame.locator('[data-link="far-post"] button[aria-pressed="true"]')
-    learner.until(lambda: pressed.count() == 1)
+    learner.until(lambda: learner.pressed("far-post"))
 
 
 def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> None:
     learner = classroom.open("camera/embed")
     agree(learner, pan=0)
-    x, y = place_of(learner, "/eye")
+    x, y = learner.place_of("/eye")
     learner.pull((x, y), -20, -16)
-    learner.until(lambda: np.testing.assert_allclose(place_of(learner, "/eye"), [x - 20, y - 16], atol=3))
+    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/eye"), [x - 20, y - 16], atol=3))
     solution = agree(learner, pan=0, tilt=0)
     assert np.linalg.norm(np.subtract(solution["center"], [0, -4, 1.2])) > 0.1
     np.testing.assert_allclose(
         learner.scene.world_pose("/eye")[:3, 3] - (0, 0, LIFT), solution["center"], rtol=0, atol=1e-6
     )
     center = solution["center"]
-    x, y = place_of(learner, "/look")
+    x, y = learner.place_of("/look")
     learner.pull((x, y), -25, -10)
     learner.until(lambda: learner.params["pan"] != 0)
     solution = agree(learner, position=center, roll=0)

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
-from tests.e2e.picture import Picture, project
+from tests.e2e.learner import Learner
+from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
 AXES = ("/axes/x", "/axes/y", "/axes/third/z")
@@ -86,13 +86,12 @@ def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> No
     before = np.array(agree(learner)["point_world"])
     np.testing.assert_allclose(before, POINT, atol=1e-12)
     camera = dict(learner.sockets.camera)
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
 
-    x, y = project(before, camera, canvas)
+    x, y = learner.place(before)
     learner.pull((x, y), -60, 35)
     learner.until(lambda: learner.params["point"] != [-0.6, 1, 0.8])
     aim = (x - 60, y + 35)
-    learner.until(lambda: np.testing.assert_allclose(project(held(learner), camera, canvas), aim, atol=3))
+    learner.until(lambda: np.testing.assert_allclose(learner.place(held(learner)), aim, atol=3))
     after = np.array(agree(learner)["point_world"])
     forward = np.subtract(camera["look_at"], camera["position"])
     assert abs((after - before) @ forward) / np.linalg.norm(forward) < 0.02, (

@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from sims.epipolar.model import OTHERS
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
-from tests.e2e.picture import Picture, project
+from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
 
@@ -90,10 +91,9 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
     assert learner.params["point"][1] == pytest.approx(4.0), "its depth stays"
     assert after["residual"] == pytest.approx(0.0, abs=1e-9)
 
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
     place = learner.scene.world_pose("/right_center")[:3, 3]
     learner.until(lambda: Picture(learner).shows("held", place, within=8))
-    learner.pull(project(place, learner.sockets.camera, canvas), 30, -6)
+    learner.pull(learner.place(place), 30, -6)
     learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
     agree(learner)
 
@@ -147,3 +147,48 @@ def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classr
     boxes.nth(0).fill("0.5")
     boxes.nth(0).press("Enter")
     assert agree(learner, right=[0.5, 0, 1])["rank"] == 2
+
+
+def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed")
+    frame = learner.frame
+    agree(learner, selected=1)
+    everywhere = "g g g tr"
+    frame.locator('svg[data-pane="left"] [data-link="3"] .s3-spot').hover()
+    learner.until(lambda: learner.lights("3", everywhere))
+    learner.until(lambda: learner.scene.visible("/lit"))
+    np.testing.assert_allclose(learner.scene.world_pose("/lit/ball")[:3, 3], OTHERS[1])
+
+    row = frame.get_by_role("button", name="4", exact=True)
+    row.scroll_into_view_if_needed()
+    row.hover()
+    learner.until(lambda: learner.lights("4", everywhere))
+    learner.until(lambda: np.testing.assert_allclose(learner.scene.world_pose("/lit/ball")[:3, 3], OTHERS[2]))
+    row.press("Enter")
+    agree(learner, selected=4, pick=None)
+    learner.until(lambda: learner.pressed("4"))
+    learner.until(lambda: frame.locator("svg .s3-selected").count() == 3)
+    np.testing.assert_allclose(learner.scene.world_pose("/selected/ball")[:3, 3], OTHERS[2])
+
+    frame.locator("[data-handle=right_pixel] .s3-core").hover()
+    learner.until(lambda: learner.lights("1", "g g g tr line line"))
+    learner.page.mouse.down()
+    learner.page.mouse.up()
+    agree(learner, selected=1, point=[0.3, 4, 1.2])
+
+    learner.click_on("/points/5")
+    agree(learner, selected=5, pick=None)
+    learner.until(lambda: learner.pressed("5"))
+
+
+def test_a_click_on_a_point_in_a_picture_picks_its_very_pixel_and_selects_it(classroom: Classroom) -> None:
+    learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
+    before = agree(learner, pick=None)
+    spot = box(learner.frame.locator('svg[data-pane="left"] [data-link="3"] .s3-reach'))
+    learner.page.mouse.click(spot["x"] + 0.7 * spot["width"], spot["y"] + 0.6 * spot["height"])
+    learner.until(lambda: learner.params["pick"] is not None)
+    solution = agree(learner, selected=3)
+    assert solution["picked"]["side"] == "left"
+    np.testing.assert_allclose(solution["picked"]["pixel"], before["pixels_left"][2], rtol=0, atol=0.011)
+    assert abs(np.dot(solution["picked"]["line"], [*before["pixels_right"][2], 1])) < 0.03, "its line goes through it"
+    learner.until(lambda: learner.pressed("3"))

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
-from tests.e2e.picture import Picture, project
+from tests.e2e.learner import Learner
+from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
 
@@ -45,12 +45,6 @@ def orientation(learner: Learner) -> Array:
     return R
 
 
-def tip(learner: Learner) -> tuple[float, float]:
-    """Pixel on the page of the axis's tip."""
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
-    return project(learner.scene.world_pose("/tip")[:3, 3], learner.sockets.camera, canvas)
-
-
 def write_angle(learner: Learner, text: str) -> None:
     """Key by key: the box overlooks text that comes in one piece after the server has set it."""
     angle = learner.control("textbox", "angle")
@@ -66,7 +60,7 @@ def test_the_axis_is_dragged_in_the_scene_and_the_object_turns_with_it(classroom
     learner.until(lambda: Picture(learner).shows("held", at, within=8))
     camera = dict(learner.sockets.camera)
 
-    x, y = tip(learner)
+    x, y = learner.place_of("/tip")
     mouse = learner.page.mouse
     mouse.move(x - 3, y - 3)
     mouse.move(x, y)
@@ -79,7 +73,7 @@ def test_the_axis_is_dragged_in_the_scene_and_the_object_turns_with_it(classroom
     about = Rotation.from_matrix(orientation(learner)).as_rotvec()
     drawn = np.array(learner.scene.world_pose("/tip")[:3, 3])
     np.testing.assert_allclose(about / np.linalg.norm(about), drawn / np.linalg.norm(drawn), atol=1e-6)
-    assert tip(learner)[0] > x + 20, "the tip followed the pointer"
+    assert learner.place_of("/tip")[0] > x + 20, "the tip followed the pointer"
     np.testing.assert_allclose(learner.sockets.camera["position"], camera["position"], atol=1e-9)
 
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from playwright.sync_api import Locator
 
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
-from tests.e2e.picture import Picture, project
+from tests.e2e.learner import Learner
+from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
 
@@ -124,10 +124,10 @@ def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) 
 def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     learner = classroom.open("transform-chain/embed?angles=20,-40,70")
     agree(learner, angles=[20, -40, 70])
-    x, y = grip(learner)
+    x, y = learner.place_of("/grip")
     learner.pull((x, y), -30, -24)
     learner.until(lambda: learner.params["angles"] != [20, -40, 70])
-    learner.until(lambda: np.testing.assert_allclose(grip(learner), [x - 30, y - 24], atol=3))
+    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/grip"), [x - 30, y - 24], atol=3))
     solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
     assert solution["pull_distance"] is None
 
@@ -138,12 +138,6 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     assert agree(learner)["pull_outside"]
     learner.says("Out of reach: this is as near")
     assert any("out of reach" in text for text in learner.scene.labels().values())
-
-
-def grip(learner: Learner) -> tuple[float, float]:
-    """Pixel on the page of the ball that can be dragged."""
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
-    return project(learner.scene.world_pose("/grip")[:3, 3], learner.sockets.camera, canvas)
 
 
 def test_a_joint_is_swept_and_stops_at_the_first_touch(classroom: Classroom) -> None:

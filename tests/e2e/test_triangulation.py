@@ -10,7 +10,7 @@ import pytest
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
-from tests.e2e.picture import Picture, project
+from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
 HANDLES = """() => ["left_uv", "right_uv"].map((name) => {
@@ -62,12 +62,6 @@ def pixel_of(world: npt.ArrayLike, params: dict[str, Any], sign: int) -> Array:
     return np.array([320 + f * (x - sign * params["baseline"] / 2) / y, 240 - f * (z - 1) / y])
 
 
-def grip(learner: Learner) -> tuple[float, float]:
-    """Pixel on the page of the point that can be dragged."""
-    canvas = box(learner.frame.locator("canvas[data-engine]"))
-    return project(learner.scene.world_pose("/point")[:3, 3], learner.sockets.camera, canvas)
-
-
 def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     learner = classroom.open("triangulation/embed")
     solution = agree(learner, left_uv=[410, 210], right_uv=[320, 210])
@@ -80,10 +74,10 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     picture = Picture(learner)
     assert picture.shows("held", at, within=12), f"nothing to hold: {picture.around(at)}"
 
-    x, y = grip(learner)
+    x, y = learner.place_of("/point")
     learner.pull((x, y), 24, -30)
     learner.until(lambda: learner.params["left_uv"] != [410, 210])
-    learner.until(lambda: np.testing.assert_allclose(grip(learner), [x + 24, y - 30], atol=3))
+    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/point"), [x + 24, y - 30], atol=3))
     solution = agree(learner)
     after = np.array(solution["point"])
     forward = np.subtract(camera["look_at"], camera["position"])
@@ -95,7 +89,7 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     np.testing.assert_allclose(learner.sockets.camera["position"], camera["position"], atol=1e-9)
     shown(learner)
 
-    x, y = grip(learner)
+    x, y = learner.place_of("/point")
     learner.pull((x, y), 4, 40, key="Shift")
     learner.until(lambda: not np.allclose(learner.solved()["point"], after, atol=0.05))
     step = np.abs(np.subtract(agree(learner)["point"], after))
@@ -205,3 +199,39 @@ def test_parallel_rays_are_said_where_they_happen(classroom: Classroom) -> None:
     learner.until(lambda: "arallel rays" in learner.spoken())
     learner.frame.locator("[data-handle=right_uv]").press("ArrowLeft")
     assert agree(learner, right_uv=[409, 210])["point"] is not None
+
+
+def test_an_image_point_lights_up_with_its_ray_and_a_method_is_selected_wherever_it_is_shown(
+    classroom: Classroom,
+) -> None:
+    learner = classroom.open("triangulation/embed?right_uv=320,230&baseline=0.2&method=optimal")
+    frame = learner.frame
+    agree(learner, method="optimal")
+    frame.locator("[data-handle=left_uv] .s3-core").hover()
+    learner.until(lambda: learner.lights("left", "g line tr"))
+    learner.until(lambda: learner.scene.visible("/left/lit"))
+    assert not learner.scene.visible("/right/lit")
+
+    row = frame.locator('tr[data-link="right"]')
+    row.scroll_into_view_if_needed()
+    row.hover()
+    learner.until(lambda: learner.lights("right", "g line tr"))
+    learner.until(lambda: learner.scene.visible("/right/lit"))
+    assert not learner.scene.visible("/left/lit")
+
+    button = frame.get_by_role("button", name="DLT", exact=True)
+    button.scroll_into_view_if_needed()
+    button.hover()
+    learner.until(lambda: learner.lights("dlt", "g g tr"))
+    learner.until(lambda: learner.scene.visible("/dlt/lit"))
+    for mark in frame.locator('svg [data-link="dlt"]').all():
+        mark.wait_for(state="visible")
+    assert frame.locator('svg [data-link="midpoint"] >> visible=true').count() == 0
+    button.press("Enter")
+    agree(learner, method="dlt")
+    learner.until(lambda: learner.pressed("dlt"))
+
+    learner.click_on("/closeup/midpoint")
+    agree(learner, method="midpoint")
+    learner.until(lambda: learner.pressed("midpoint"))
+    learner.until(lambda: learner.scene.visible("/midpoint/filled"))

@@ -370,6 +370,17 @@ def test_what_is_pointed_at_in_picture_or_table_lights_up_in_the_scene_and_passe
     assert rig.session.params == START, "pointing changes nothing"
 
 
+def test_what_is_lit_stays_lit_while_the_camera_moves(rig: Rig) -> None:
+    rig.show(START)
+    rig.host.call(lambda: rig.session.point("cube-far"))
+    rig.change(pan=20.0)
+    rig.settle()
+    assert rig.model.visible("/lit")
+    rig.host.call(lambda: rig.session.point(""))
+    rig.settle()
+    assert not rig.model.visible("/lit")
+
+
 def test_every_point_can_be_clicked_and_its_row_pressed(rig: Rig) -> None:
     rig.show(START)
     for name in NAMES:

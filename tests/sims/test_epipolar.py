@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from typing import Any
+from xml.etree import ElementTree
 
 import cv2
 import numpy as np
@@ -15,12 +16,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, plan, solve
-from sims.epipolar.model import PRESETS
+from sims.epipolar.model import OTHERS, PRESETS
 from sims.epipolar.pictures import panes
 from sims.kit import readout
 from sims.kit.palette import LIGHT
+from sims.kit.pane import INSET
 from sims.kit.params import BadParams
+from sims.kit.readout import figure
 from sims.kit.sim import jsonable
+from tests.frames import differences
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
@@ -394,7 +398,9 @@ def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: Epi
     np.testing.assert_array_equal(model.world_pose("/point")[:3, 3], params.point)
     close(ends(rig, "/baseline"), [params.left, params.right], within=1e-6)
     if params.points > 1:
-        close(model.points("/others"), s.points[1:], within=1e-6)
+        others = [f"/points/{k}" for k in range(2, 13)]
+        assert [model.visible(name) for name in others] == [k < params.points for k in range(1, 12)]
+        close([model.world_pose(name)[:3, 3] for name in others[: params.points - 1]], s.points[1:])
 
 
 def crosses(lines: Array) -> bool:
@@ -488,8 +494,7 @@ def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
     p = DRAWN[name]
     s = solve(p)
     for pane, side in zip(panes(p, s, LIGHT), SIDES, strict=False):
-        dots = [d for d in shapes(pane.svg, "circle") if d.get("fill") == f"var(--{side})"]
-        at = np.array([[float(d["cx"]), float(d["cy"])] for d in dots])
+        at = [mark_places(pane.svg)[f"{k}"] for k in range(2, p.points + 1)]
         np.testing.assert_allclose(at, pixels_of(s, side)[1:], rtol=0, atol=0.006)
         held = next(g for g in shapes(pane.svg, "g") if g.get("data-handle") == f"{side}_pixel")
         assert (float(held["data-x"]), float(held["data-y"])) == (s.pixel_left if side == "left" else s.pixel_right)
@@ -501,25 +506,60 @@ def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
                 assert abs(np.dot(line, [float(d[f"x{k}"]), float(d[f"y{k}"]), 1])) < 0.02
 
 
+def marks(svg: str, name: str) -> list[ElementTree.Element]:
+    return [e for e in xml(svg).iter("{*}g") if e.get("data-link") == name and "s3-point" in str(e.get("class"))]
+
+
+def mark_places(svg: str) -> dict[str, Array]:
+    """Where the linked points of a picture are."""
+    return {str(e.get("data-link")): moved_to(e) for e in xml(svg).iter("{*}g") if e.get("data-link")}
+
+
+def moved_to(mark: ElementTree.Element) -> Array:
+    """The place to which a mark is moved."""
+    return np.array([float(v) for v in re.findall(r"[-\d.]+", str(mark.get("transform")))])
+
+
+def at_border(place: Array) -> bool:
+    return bool(min(place[0], 639 - place[0], place[1], 479 - place[1]) == pytest.approx(INSET - 0.5, abs=0.01))
+
+
 @pytest.mark.parametrize(
-    ("name", "arrows"), [("defaults", 2), ("vertical", 2), ("converging", 1), ("forward", 0), ("zero baseline", 0)]
+    ("name", "heads"), [("defaults", 2), ("vertical", 2), ("converging", 1), ("forward", 0), ("zero baseline", 0)]
 )
-def test_an_arrow_at_the_border_points_to_an_epipole_that_is_outside(name: str, arrows: int) -> None:
+def test_an_epipole_that_is_outside_is_marked_at_the_border_in_its_direction(name: str, heads: int) -> None:
     p = DRAWN[name]
     s = solve(p)
     for pane, pole in zip(panes(p, s, LIGHT), (s.epipole_left_pixel, s.epipole_right_pixel), strict=False):
-        found = [d for d in shapes(pane.svg, "line") if "marker-end" in d]
-        assert len(found) == arrows
-        for arrow in found:
-            u, v, x, y = (float(arrow[k]) for k in ("x1", "y1", "x2", "y2"))
-            assert min(abs(x + 0.5), abs(x - 639.5), abs(y + 0.5), abs(y - 479.5)) < 6, "its tip is at the border"
+        found = [e for e in xml(pane.svg).iter("{*}g") if "Epipole" in str(e.findtext("{*}title"))]
+        assert len(found) == heads
+        for mark in found:
+            (head,) = mark.iter("{*}path")
+            place = moved_to(mark)
+            assert at_border(place)
+            assert str(head.get("d")).count("z") == (2 if pole is None else 1), "at infinity it has two heads"
             if pole is not None:
-                toward = np.array(pole) - (320, 240)
-                assert toward @ (x - u, y - v) == pytest.approx(
-                    np.linalg.norm(toward) * math.hypot(x - u, y - v), rel=1e-3
-                )
+                way, toward = place - (319.5, 239.5), np.array(pole) - (319.5, 239.5)
+                close(way / np.linalg.norm(way), toward / np.linalg.norm(toward), within=1e-4)
+        assert heads == 2 or "∞" not in "".join(xml(pane.svg).itertext())
         rings = [d for d in shapes(pane.svg, "circle") if d.get("class") == "s3-hollow"]
         assert len(rings) == (pole is not None and in_frame(np.array([pole])))
+
+
+def test_points_that_are_outside_a_picture_are_marked_at_its_border() -> None:
+    p = START.changed({"left_pan": 12, "right_pan": -12, "point": (4.0, 3.0, 1.0), "points": 12, "selected": 5})
+    s = solve(p)
+    out = 0
+    for pane, side in zip(panes(p, s, LIGHT), SIDES, strict=False):
+        for k, pixel in enumerate(pixels_of(s, side), start=1):
+            if in_frame(pixel[None]):
+                assert not any(at_border(moved_to(mark)) for mark in marks(pane.svg, f"{k}"))
+                continue
+            out += 1
+            (mark,) = marks(pane.svg, f"{k}")
+            assert at_border(moved_to(mark))
+            assert "s3-selected" in str(mark.get("class")) or k != 5
+    assert out > 6
 
 
 def test_both_pictures_can_be_picked_in_and_the_plan_goes_when_told() -> None:
@@ -543,6 +583,86 @@ def test_the_plan_shows_places_from_above(name: str) -> None:
         assert re.search(rf"X {x:.2f}, Y {y:.2f} metres".replace("-", "−"), g["aria-label"])
         held = p.changed(SIM.handles[f"plan_{handle}"](p, (at[0] + plan.SCALE, at[1] - plan.SCALE)))
         assert getattr(held, handle) == pytest.approx((x + 1, y + 1, z)), "X to the right, Y up, the same height"
+
+
+# ---- links
+
+
+def kinds_of(html: str, name: str) -> list[str]:
+    """What is linked under a name, and its classes."""
+    linked = [e for e in xml(html).iter() if e.get("data-link") == name]
+    return sorted(f"{e.tag.split('}')[-1]} {e.get('class', '')}".strip() for e in linked)
+
+
+def test_every_point_is_linked_across_pictures_plan_table_and_scene(rig: Rig) -> None:
+    rig.show(START.changed({"points": 12, "show_all_lines": True}))
+    pictures, table = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    for k in range(2, 13):
+        assert kinds_of(pictures, f"{k}") == ["g s3-point"] * 3 + ["line"] * 2
+        assert kinds_of(table, f"{k}") == ["tr"]
+        assert rig.model.node(f"/points/{k}").clicks
+    assert kinds_of(pictures, "1") == ["g"] * 3 + ["line"] * 2, "three handles and two lines"
+    assert kinds_of(table, "1") == ["tr s3-selected"]
+    assert rig.model.node("/point").clicks
+    assert 'data-link="7"' not in panes(START, solve(START), LIGHT)[0].svg, "it isn't shown"
+
+
+def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(rig: Rig) -> None:
+    p = START.changed({"point": (-0.5, 3.0, 1.5)})
+    rig.show(p)
+    before = rig.model.snapshot()
+    for name, place in (("1", p.point), ("4", OTHERS[2])):
+        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.settle()
+        after = rig.model.snapshot()
+        assert {key for key in after if key not in before} == {"scene /lit", "scene /lit/ball", "scene /lit/rays"}
+        assert not differences(before, {key: after[key] for key in before})
+        close(rig.model.world_pose("/lit/ball")[:3, 3], place, within=1e-9)
+        close(rig.model.points("/lit/rays"), [(p.left, place), (p.right, place)], within=1e-6)
+    rig.change(right=(0.8, 0.1, 1.0))
+    rig.settle()
+    close(rig.model.points("/lit/rays")[1], [(0.8, 0.1, 1.0), OTHERS[2]], within=1e-6)
+    rig.show(p)
+    for name in ("", "7", "13", "0", "nobody"):
+        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.settle()
+        assert not differences(before, rig.model.snapshot()), "points that aren't shown don't light up"
+
+
+def test_a_point_that_is_selected_is_marked_everywhere(rig: Rig) -> None:
+    rig.show(START)
+    assert not rig.model.visible("/selected")
+    rig.browser.click("/points/3")
+    rig.settle()
+    assert rig.session.params == START.changed({"selected": 3})
+    pictures, table = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    assert kinds_of(pictures, "3") == ["g s3-point s3-selected"] * 3
+    assert (pictures + table).count("s3-selected") == 4
+    assert kinds_of(table, "3") == ["tr s3-selected"]
+    close(rig.model.world_pose("/selected/ball")[:3, 3], OTHERS[1], within=1e-9)
+    close(rig.model.points("/selected/rays"), [(START.left, OTHERS[1]), (START.right, OTHERS[1])], within=1e-6)
+    assert rig.model.labels()["/selected/ball/label"] == "point 3"
+    rig.change(points=2)
+    rig.settle()
+    assert not rig.model.visible("/selected"), "a point that isn't shown isn't marked"
+    rig.browser.click("/point")
+    rig.settle()
+    assert rig.session.params == START.changed({"points": 2})
+
+
+def test_the_table_holds_the_pixels_of_all_points() -> None:
+    p = START.changed({"left_pan": 12, "right_pan": -12, "points": 12})
+    s = solve(p)
+    html = readout.render(SIM.readouts(p, s))
+    rows = {str(e.get("data-link")): [str(td.text) for td in e.iter("td")] for e in xml(html).iter("tr")}
+    for k, (left, right) in enumerate(zip(s.pixels_left, s.pixels_right, strict=True), start=1):
+        expected = []
+        for pixel in (left, right):
+            words = [figure(float(v), 1) for v in pixel]
+            expected += words if in_frame(pixel[None]) else [f"({word})" for word in words]
+        assert rows[f"{k}"] == expected
+    behind = START.changed(SIM.states["behind both"])
+    assert words(readout.render(SIM.readouts(behind, solve(behind)))).count("–") == 4
 
 
 # ---- hands and buttons

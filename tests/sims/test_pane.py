@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.pane import INSET, Pane, Picture, across, border, render
+from sims.kit.pane import INSET, Pane, Picture, across, border, inside, render
 from tests.sims.markup import bad_attributes, mistakes, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -253,12 +253,45 @@ def full_and_pickable() -> Picture:
     return picture
 
 
-def test_a_picture_begins_with_what_is_under_it_and_leaves_that_alone() -> None:
-    below = Picture("p", "P")
-    below.curve([(1, 2), (3, 4), (5, 6.25)], "ghost")
-    alone = below.pane().svg
-    above = Picture("p", "P", under=below)
-    above.dot((7, 8), "x")
-    assert 'd="M1.0 2.0L3.0 4.0L5.0 6.2"' in above.pane().svg
-    assert "<circle" in above.pane().svg
-    assert below.pane().svg == alone
+def test_a_curve_runs_through_its_points() -> None:
+    picture = Picture("p", "P")
+    picture.curve([(1, 2), (3, 4), (5, 6.25)], "ghost")
+    assert 'd="M1.0 2.0L3.0 4.0L5.0 6.2"' in picture.pane().svg
+
+
+def test_a_picture_takes_the_whole_width_where_told() -> None:
+    assert not Picture("p", "P").pane().wide
+    assert Picture("p", "P").pane("note", wide=True).wide
+
+
+# ---- links
+
+
+def test_strokes_and_handles_light_up_with_what_else_is_linked() -> None:
+    picture = Picture("p", "P")
+    picture.line((0, 0), (1, 1), "x", link="roof")
+    picture.homogeneous_line((1.0, 0.0, -5.0), "x", link="roof")
+    picture.cross((5, 5), "x", link="roof")
+    picture.handle("h", (5, 5), "Roof", "R", link="roof")
+    picture.outside((1e4, 0.0, 1.0), "x", "roof", link="roof")
+    picture.line((0, 0), (1, 1), "x")
+    picture.handle("g", (5, 5), "Gate", "G")
+    linked = [e.tag.split("}")[-1] for e in xml(picture.pane().svg).iter() if e.get("data-link") == "roof"]
+    assert linked == ["line"] * 4 + ["g"] * 2
+    assert picture.pane().svg.count("data-link") == 6
+
+
+def test_a_quiet_point_is_marked_as_such_and_a_chosen_one_never_is() -> None:
+    picture = Picture("p", "P")
+    picture.point("a", (1, 2), "A", quiet=True)
+    picture.point("b", (1, 2), "B", chosen=True, quiet=True)
+    kinds = {e.get("data-link"): str(e.get("class")).split() for e in xml(picture.pane().svg).iter("g")}
+    assert "s3-quiet" in kinds["a"]
+    assert "s3-quiet" not in kinds["b"]
+
+
+@given(st.floats(-700, 700, allow_subnormal=False), st.floats(-700, 700))
+def test_a_place_is_inside_a_picture_or_outside_and_nan_is_not_inside(x: float, y: float) -> None:
+    assert inside(x, y, 640, 480) == (abs(x - 319.5) <= 320.0 and abs(y - 239.5) <= 240.0)
+    assert not inside(np.nan, y, 640, 480)
+    assert not inside(x, np.nan, 640, 480)

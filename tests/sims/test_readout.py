@@ -151,3 +151,14 @@ def test_rows_of_a_table_are_linked_and_the_selected_one_says_so() -> None:
     assert [(b.text, b.get("aria-pressed")) for b in buttons] == [("Roof", "false"), ("Gate & co", "true")]
     assert [e.get("class") for e in rows] == [None, "s3-selected"]
     assert not mistakes(table.html())
+
+
+def test_rows_after_those_that_can_be_selected_may_light_up_and_are_no_buttons() -> None:
+    table = Table(
+        "Points", [("point", "u"), ("Roof", "1"), ("True & fair", "2"), ("Rest", "3")], ("roof",), "roof", ("t",)
+    )
+    rows = list(xml(table.html()).iter("tr"))[1:]
+    assert [e.get("data-link") for e in rows] == ["roof", "t", None]
+    assert [len(list(e.iter("button"))) for e in rows] == [1, 0, 0]
+    assert [e.get("class") for e in rows] == ["s3-selected", None, None]
+    assert "True &amp; fair" in table.html()

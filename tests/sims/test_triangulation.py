@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
+from collections.abc import Iterator
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -19,10 +20,13 @@ from geometry.camera import parallel_rig
 from geometry.triangulation import covariance, monte_carlo
 from sims.kit import readout
 from sims.kit.palette import LIGHT
+from sims.kit.pane import inside
+from sims.kit.readout import figure
 from sims.kit.sim import jsonable
 from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, model, solve
 from sims.triangulation.closeup import chord
 from sims.triangulation.pictures import magnification, panes
+from tests.frames import differences
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
@@ -403,6 +407,7 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         assert handle.get("data-handle") == f"{own}_uv"
         assert (float(handle.get("data-x") or 0), float(handle.get("data-y") or 0)) == pixel
         line, arrow = (e for e in root.iter() if e.tag.endswith("line"))
+        assert (handle.get("data-link"), line.get("data-link"), arrow.get("data-link")) == (own, other, None)
         assert line.get("stroke") == f"var(--{other})"
         row = 222.0 if own == "left" else 210.0
         assert float(line.get("y1") or 0) == float(line.get("y2") or 0) == pytest.approx(row)
@@ -410,6 +415,137 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         length = float(arrow.get("y2") or 0) - float(arrow.get("y1") or 0)
         assert abs(length) == pytest.approx(6.0 * times, abs=0.02)
         assert pane.note == f"error 6.00\u2009px, arrow ×{times}"
+
+
+MISS = START.changed({"right_uv": (320, 230), "noise": 2.0, "baseline": 0.2, "method": "optimal"})
+NOISY = START.changed({"noise": 2.0, "seed": 5, "method": "midpoint"})
+
+
+def linked(html: str, name: str) -> list[str]:
+    """What is linked under a name, and its classes."""
+    found = [e for e in xml(html).iter() if e.get("data-link") == name]
+    return sorted(f"{e.tag.split('}')[-1]} {e.get('class', '')}".strip() for e in found)
+
+
+@pytest.fixture(scope="module")
+def rig() -> Iterator[Rig]:
+    with Rig(SIM) as rig:
+        yield rig
+
+
+@pytest.mark.parametrize("p", [START, MISS, NOISY], ids=["defaults", "miss", "noise"])
+def test_image_points_are_linked_with_their_lines_rays_and_rows(rig: Rig, p: TriangulationParams) -> None:
+    rig.show(p)
+    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    rows = {str(e.get("data-link")): [str(td.text) for td in e.iter("td")] for e in xml(tables).iter("tr")}
+    for side, measured in zip(("left", "right"), model.measured(p), strict=True):
+        lines = 3 if p.noise else 1  # a cross is two
+        assert linked(pictures, side) == ["g", *["line"] * lines]
+        assert linked(tables, side) == ["tr"], "it can't be selected"
+        assert rows[side] == [figure(v, 2) for v in measured]
+
+
+@pytest.mark.parametrize("p", [START, MISS, NOISY], ids=["defaults", "miss", "noise"])
+def test_points_of_all_methods_are_linked_with_where_they_are_seen_and_their_rows(
+    rig: Rig, p: TriangulationParams
+) -> None:
+    rig.show(p)
+    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    solution = solve(p)
+    for name, result in solution.by_method.items():
+        chosen = name == p.method
+        assert linked(pictures, name) == ["g s3-point" if chosen else "g s3-point s3-quiet"] * 2
+        assert linked(tables, name) == ["tr s3-selected" if chosen else "tr"]
+        for mark, at in zip(
+            (e for e in xml(pictures).iter() if e.get("data-link") == name),
+            (result.pixel_left, result.pixel_right), strict=True,
+        ):  # fmt: skip
+            assert at is not None
+            place = [float(v) for v in re.findall(r"[-\d.]+", str(mark.get("transform")))]
+            np.testing.assert_allclose(place, at, rtol=0, atol=0.006)
+        for path in (f"/{name}", f"/closeup/{name}"):
+            assert all(rig.model.node(f"{path}/{body}").clicks for body in ("filled", "ghost", "lit"))
+    assert linked(pictures, "true") == ([] if solution.true_point is None else ["g s3-point s3-quiet"] * 2)
+    assert linked(tables, "true") == ([] if solution.true_point is None else ["tr"])
+
+
+def test_the_true_point_has_a_row_with_the_errors_that_the_noise_made() -> None:
+    solution = solve(NOISY)
+    assert solution.point is not None
+    assert solution.true_point is not None
+    tables = xml(readout.render(SIM.readouts(NOISY, solution)))
+    (row,) = (e for e in tables.iter("tr") if e.get("data-link") == "true")
+    a, b = (math.dist(m, h) for m, h in zip(model.measured(NOISY), (NOISY.left_uv, NOISY.right_uv), strict=True))
+    apart = 1000.0 * math.dist(solution.true_point, solution.point)
+    expected = [figure(a, 3), figure(b, 3), figure(math.hypot(a, b) / math.sqrt(2), 3), f"{figure(apart, 1)}\u2009mm"]
+    assert [str(td.text) for td in row.iter("td")] == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "nodes"),
+    [
+        ("left", {"/left/lit"}),
+        ("right", {"/right/lit"}),
+        ("dlt", {"/dlt/lit", "/closeup/dlt/lit"}),
+        ("optimal", {"/optimal/lit", "/closeup/optimal/lit"}),
+        ("true", {"/point/lit", "/closeup/true/lit"}),
+        ("", set()),
+        ("nobody", set()),
+    ],
+)
+def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(
+    rig: Rig, name: str, nodes: set[str]
+) -> None:
+    rig.host.call(lambda: rig.session.point(""))
+    rig.show(NOISY)
+    before = rig.model.snapshot()
+    rig.host.call(lambda: rig.session.point(name))
+    rig.settle()
+    after = rig.model.snapshot()
+    assert {key.removeprefix("scene ") for key in after if key not in before} == nodes
+    assert not differences(before, {key: after[key] for key in before})
+    for side in ("left", "right"):
+        if f"/{side}/lit" in nodes:
+            np.testing.assert_array_equal(rig.model.points(f"/{side}/lit"), rig.model.points(f"/{side}/ray"))
+            rig.show(NOISY.changed({"left_uv": (300, 300), "right_uv": (200, 300)}))
+            np.testing.assert_array_equal(rig.model.points(f"/{side}/lit"), rig.model.points(f"/{side}/ray"))
+    rig.host.call(lambda: rig.session.point(""))
+    rig.show(NOISY)
+    assert not differences(before, rig.model.snapshot(), within=1e-12)
+
+
+def test_a_method_is_selected_by_a_click_on_its_point_and_marked_everywhere(rig: Rig) -> None:
+    rig.show(MISS)
+    rig.browser.click("/closeup/midpoint/ghost")
+    rig.settle()
+    assert rig.session.params == MISS.changed({"method": "midpoint"})
+    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    assert linked(pictures, "midpoint") == ["g s3-point"] * 2
+    assert linked(tables, "midpoint") == ["tr s3-selected"]
+    assert tables.count("s3-selected") == 1
+    assert rig.model.visible("/midpoint/filled")
+    rig.host.call(lambda: rig.session.select("left"))
+    rig.settle()
+    assert rig.session.params == MISS.changed({"method": "midpoint"}), "an image point can't be selected"
+
+
+def test_what_is_outside_a_picture_is_marked_at_its_border() -> None:
+    p = START.changed({"left_uv": (639, 479), "right_uv": (0, 0), "noise": 5.0, "seed": 3})
+    solution = solve(p)
+    out = 0
+    for pane, side, found in zip(
+        panes(p, solution, LIGHT), ("left", "right"),
+        (solution.by_method["dlt"].pixel_left, solution.by_method["dlt"].pixel_right), strict=False,
+    ):  # fmt: skip
+        for name, at in (
+            (side, {"left": solution.measured_left, "right": solution.measured_right}[side]),
+            ("dlt", found),
+        ):
+            heads = [e for e in xml(pane.svg).iter() if e.get("data-link") == name and list(e.iter("{*}path"))]
+            outside = at is not None and not inside(*at, 640, 480)
+            assert len(heads) == outside
+            out += outside
+    assert out > 0
 
 
 @pytest.mark.parametrize(("left", "right", "times"), [(None, None, 1), (0.0, 0.0, 1), (80.0, 3.0, 1), (0.0, 6.0, 20)])
