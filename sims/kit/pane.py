@@ -15,6 +15,8 @@ from html import escape
 safe = lru_cache(maxsize=1024)(escape)
 """`escape` for words that come again in each picture."""
 Point = Sequence[float]
+GRAB = 44.0
+"""Pixels round a handle in which it can be taken."""
 INSET = 14.0
 """Pixels from the picture's edge at which what lies outside is marked."""
 
@@ -39,6 +41,8 @@ class Picture:
         self.width, self.height = width, height
         self._parts: list[str] = []
         self._over: list[str] = []
+        self._points: list[tuple[float, float, str]] = []
+        self._handles: list[tuple[float, float, str]] = []
         self._ground = 'class="s3-frame"'
 
     def line(
@@ -118,14 +122,16 @@ class Picture:
         `where` says its place where that isn't the pixel. It lights up with what else `link` is, and a click on it
         selects that.
         """
-        self._over.append(
-            f'<g data-handle="{name}"{_linked(link)} data-x="{float(at[0])!r}" data-y="{float(at[1])!r}" tabindex="0"'
+        x, y = float(at[0]), float(at[1])
+        drawn = (
+            f'<g data-handle="{name}"{_linked(link)} data-x="{x!r}" data-y="{y!r}" tabindex="0"'
             f' role="application" aria-roledescription="movable point"'
-            f' aria-label="{escape(label)}: {escape(where) or f"{at[0]:.1f}, {at[1]:.1f} pixels"}.'
-            f' Arrow keys move it." transform="translate({at[0]:.3f} {at[1]:.3f})">'
-            '<circle class="s3-grab" r="44"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
+            f' aria-label="{escape(label)}: {escape(where) or f"{x:.1f}, {y:.1f} pixels"}.'
+            f' Arrow keys move it." transform="translate({x:.3f} {y:.3f})">'
+            f'<circle class="s3-grab" r="{GRAB:g}"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
             f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
         )
+        self._handles.append((x, y, drawn))
 
     def shows(self, at: Point) -> bool:
         """Whether a place is inside the frame."""
@@ -147,11 +153,12 @@ class Picture:
             if label
             else ""
         )
-        self._over.append(
+        drawn = (
             f'<g data-link="{safe(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
             f'<title>{safe(title)}</title><circle class="s3-reach" r="16"/>{ring}'
             f'<circle class="s3-spot" r="5" fill="var(--{"held" if chosen else role})"/>{words}</g>'
         )
+        self._points.append((at[0], at[1], drawn))
 
     def outside(
         self, point: Point, role: str, words: str, *, link: str = "", title: str = "", chosen: bool = False
@@ -186,6 +193,7 @@ class Picture:
         """Another picture that begins with what is in this one: for what stays the same from state to state."""
         other = Picture(self.name, self.title, self.width, self.height)
         other._parts, other._over, other._ground = [*self._parts], [*self._over], self._ground
+        other._points, other._handles = [*self._points], [*self._handles]
         return other
 
     def pane(self, note: str = "", *, wide: bool = False) -> Pane:
@@ -200,9 +208,17 @@ class Picture:
         svg = (
             f'<svg data-pane="{name}" viewBox="-0.5 -0.5 {w} {h}" role="group" aria-label="{escape(self.title)}">'
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
-            f"{''.join(self._over)}</svg>"
+            f"{''.join(self._over)}{''.join(self._reachable())}</svg>"
         )
         return Pane(self.name, self.title, svg, note, wide)
+
+    def _reachable(self) -> list[str]:
+        """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
+        near, far = [], []
+        for x, y, drawn in self._points:
+            close = any(abs(x - u) < GRAB and abs(y - v) < GRAB for u, v, _ in self._handles)
+            (near if close else far).append(drawn)
+        return [*near, *(drawn for *_, drawn in self._handles), *far]
 
 
 def _linked(link: str) -> str:

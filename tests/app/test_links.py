@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any
 
 import numpy as np
 
-from app.session import Sessions
+from app.session import Session, Sessions
 from sims.camera import SIM as CAMERA
 from sims.camera.world import PLACES
-from sims.kit.params import Params
 from tests.app.conftest import Local
 from tests.app.page import Page
 
 
 def lit(page: Page, name: str) -> bool:
     """Whether a page's scene lights up the point of that name; an empty name is nothing."""
-    if not name:
-        return not page.model.visible("/lit")
-    return page.model.visible("/lit") and np.allclose(page.model.world_pose("/lit")[:3, 3], PLACES[name])
+    if not name or not page.model.visible("/lit"):
+        return not name and not page.model.visible("/lit")
+    return np.allclose(page.model.world_pose("/lit")[:3, 3], PLACES[name])
+
+
+def lights(page: Page, name: str) -> None:
+    """Wait until a page's scene does."""
+    page.until(lambda: lit(page, name), f"{name or 'nothing'} to be lit")
 
 
 def point_at(page: Page, name: str) -> None:
@@ -36,12 +39,12 @@ def test_what_somebody_points_at_lights_up_for_the_whole_room_and_stays_lit_whil
     with Page(local.url, slug="camera", room=teacher.room) as watcher, Page(local.url, slug="camera") as stranger:
         point_at(teacher, "far-post")
         for page in (teacher, watcher):
-            page.until(lambda page=page: lit(page, "far-post"), "the light")
+            lights(page, "far-post")
         watcher.until(lambda: heard(watcher) == ["far-post"], "the word")
         teacher.tell({"type": "set", "params": {"pan": 10}})
         for page in (teacher, watcher):
-            page.until(lambda page=page: page.params["pan"] == 10, "the state")
             page.settle()
+            assert page.params["pan"] == 10
             assert lit(page, "far-post"), "it stays lit when the scene is drawn anew"
         assert heard(teacher) == [], "a page isn't told what it points at itself"
         stranger.settle()
@@ -49,7 +52,7 @@ def test_what_somebody_points_at_lights_up_for_the_whole_room_and_stays_lit_whil
         assert heard(stranger) == []
 
         teacher.close()
-        watcher.until(lambda: lit(watcher, ""), "the light to go with who pointed")
+        lights(watcher, "")  # it goes with who pointed
         watcher.until(lambda: heard(watcher) == ["far-post", ""], "the word")
 
 
@@ -57,7 +60,7 @@ def test_who_only_watches_points_for_their_own_eyes_and_selects_nothing(local: L
     with Page(local.url, slug="camera") as teacher, Page(local.url, slug="camera", room=teacher.room) as watcher:
         before = local.refusals["watching"]
         point_at(watcher, "cube-left")
-        watcher.until(lambda: lit(watcher, "cube-left"), "the light")
+        lights(watcher, "cube-left")
         watcher.tell({"type": "select", "name": "cube-left"})
         local.refused("watching", before)
         teacher.settle()
@@ -84,13 +87,13 @@ def test_a_selection_ends_a_motion_and_one_that_is_none_does_not() -> None:
         session.act("dolly-zoom")
         await asyncio.sleep(0.1)
         session.select("nobody")
-        assert session._motion is not None
+        assert moving(session)
         session.select("far-foot")
-        assert session._motion is None
-        assert chosen(session.params) == "far-foot"
+        assert not moving(session)
+        assert session.params.model_dump()["selected"] == "far-foot"
 
     asyncio.run(asyncio.wait_for(test(), 20))
 
 
-def chosen(params: Params) -> Any:
-    return params.model_dump()["selected"]
+def moving(session: Session) -> bool:
+    return session._motion is not None

@@ -184,11 +184,11 @@ def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(clas
 def test_a_click_on_a_point_in_a_picture_picks_its_very_pixel_and_selects_it(classroom: Classroom) -> None:
     learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
     before = agree(learner, pick=None)
-    spot = box(learner.frame.locator('svg[data-pane="left"] [data-link="3"] .s3-reach'))
+    spot = box(learner.frame.locator('svg[data-pane="left"] [data-link="2"] .s3-reach'))
     learner.page.mouse.click(spot["x"] + 0.7 * spot["width"], spot["y"] + 0.6 * spot["height"])
     learner.until(lambda: learner.params["pick"] is not None)
-    solution = agree(learner, selected=3)
+    solution = agree(learner, selected=2)
     assert solution["picked"]["side"] == "left"
-    np.testing.assert_allclose(solution["picked"]["pixel"], before["pixels_left"][2], rtol=0, atol=0.011)
-    assert abs(np.dot(solution["picked"]["line"], [*before["pixels_right"][2], 1])) < 0.03, "its line goes through it"
-    learner.until(lambda: learner.pressed("3"))
+    np.testing.assert_allclose(solution["picked"]["pixel"], before["pixels_left"][1], rtol=0, atol=0.011)
+    assert abs(np.dot(solution["picked"]["line"], [*before["pixels_right"][1], 1])) < 0.03, "its line goes through it"
+    learner.until(lambda: learner.pressed("2"))

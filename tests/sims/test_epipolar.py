@@ -507,12 +507,12 @@ def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
 
 
 def marks(svg: str, name: str) -> list[ElementTree.Element]:
-    return [e for e in xml(svg).iter("{*}g") if e.get("data-link") == name and "s3-point" in str(e.get("class"))]
+    return [e for e in xml(svg).iter("g") if e.get("data-link") == name and "s3-point" in str(e.get("class"))]
 
 
 def mark_places(svg: str) -> dict[str, Array]:
     """Where the linked points of a picture are."""
-    return {str(e.get("data-link")): moved_to(e) for e in xml(svg).iter("{*}g") if e.get("data-link")}
+    return {str(e.get("data-link")): moved_to(e) for e in xml(svg).iter("g") if e.get("data-link")}
 
 
 def moved_to(mark: ElementTree.Element) -> Array:
@@ -531,10 +531,10 @@ def test_an_epipole_that_is_outside_is_marked_at_the_border_in_its_direction(nam
     p = DRAWN[name]
     s = solve(p)
     for pane, pole in zip(panes(p, s, LIGHT), (s.epipole_left_pixel, s.epipole_right_pixel), strict=False):
-        found = [e for e in xml(pane.svg).iter("{*}g") if "Epipole" in str(e.findtext("{*}title"))]
+        found = [e for e in xml(pane.svg).iter("g") if "Epipole" in str(e.findtext("title"))]
         assert len(found) == heads
         for mark in found:
-            (head,) = mark.iter("{*}path")
+            (head,) = mark.iter("path")
             place = moved_to(mark)
             assert at_border(place)
             assert str(head.get("d")).count("z") == (2 if pole is None else 1), "at infinity it has two heads"
@@ -658,8 +658,8 @@ def test_the_table_holds_the_pixels_of_all_points() -> None:
     for k, (left, right) in enumerate(zip(s.pixels_left, s.pixels_right, strict=True), start=1):
         expected = []
         for pixel in (left, right):
-            words = [figure(float(v), 1) for v in pixel]
-            expected += words if in_frame(pixel[None]) else [f"({word})" for word in words]
+            cells = [figure(float(v), 1) for v in pixel]
+            expected += cells if in_frame(pixel[None]) else [f"({cell})" for cell in cells]
         assert rows[f"{k}"] == expected
     behind = START.changed(SIM.states["behind both"])
     assert words(readout.render(SIM.readouts(behind, solve(behind)))).count("–") == 4

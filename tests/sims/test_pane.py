@@ -267,6 +267,15 @@ def test_a_picture_takes_the_whole_width_where_told() -> None:
 # ---- links
 
 
+def test_a_handle_covers_points_that_are_nearer_than_its_reach_and_no_others() -> None:
+    picture = Picture("p", "P")
+    picture.handle("h", (100, 100), "Handle", "H")
+    picture.point("far", (146, 100), "Far")
+    picture.point("near", (130, 100), "Near")
+    order = [e.get("data-link") or e.get("data-handle") for e in xml(picture.copy().pane().svg).iter("g")]
+    assert [name for name in order if name] == ["near", "h", "far"]
+
+
 def test_strokes_and_handles_light_up_with_what_else_is_linked() -> None:
     picture = Picture("p", "P")
     picture.line((0, 0), (1, 1), "x", link="roof")

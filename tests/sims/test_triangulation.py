@@ -541,7 +541,7 @@ def test_what_is_outside_a_picture_is_marked_at_its_border() -> None:
             (side, {"left": solution.measured_left, "right": solution.measured_right}[side]),
             ("dlt", found),
         ):
-            heads = [e for e in xml(pane.svg).iter() if e.get("data-link") == name and list(e.iter("{*}path"))]
+            heads = [e for e in xml(pane.svg).iter() if e.get("data-link") == name and list(e.iter("path"))]
             outside = at is not None and not inside(*at, 640, 480)
             assert len(heads) == outside
             out += outside
