@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
+import numpy as np
+
 from geometry.arrays import Array
 from sims.epipolar.drawn import in_picture
 from sims.epipolar.model import HEIGHT, LAST, WIDTH, EpipolarParams, Pixel, Side, title
@@ -31,9 +33,10 @@ def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
     line, lines = (s.line_left, s.lines_left) if left else (s.line_right, s.lines_right)
     pixel, pixels = (s.pixel_left, s.pixels_left) if left else (s.pixel_right, s.pixels_right)
     epipole, at = (s.epipole_left, s.epipole_left_pixel) if left else (s.epipole_right, s.epipole_right_pixel)
-    picture = _frame(side).copy()
+    picture = _others(side, pixels[1:].tobytes(), p.selected).copy()
     _lines(picture, p, s, side, line, lines)
-    _points(picture, p, s, side, pixels)
+    if p.noise > 0.0:
+        _measured(picture, s.estimate.measured_left if left else s.estimate.measured_right)
     if epipole is not None:
         _epipole(picture, epipole, at, f"e{mark}")
     if pixel is not None:
@@ -77,21 +80,27 @@ def _lines(
         picture.homogeneous_line(s.picked.line.tolist(), "held", width=3.5)
 
 
-def _points(picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, pixels: Array) -> None:
-    for k, (u, v) in enumerate(pixels.tolist()[1:], start=2):
-        chosen = k == p.selected
+@lru_cache(maxsize=64)
+def _others(side: Side, pixels: bytes, selected: int) -> Picture:
+    """A picture with the points that stay where they are while the 3D point is moved."""
+    picture = _frame(side).copy()
+    for k, (u, v) in enumerate(np.frombuffer(pixels).reshape(-1, 2).tolist(), start=2):
+        chosen = k == selected
         if in_picture(u, v):
             picture.point(f"{k}", (u, v), title(k), side, chosen=chosen, label=f"{k}" if chosen else "")
             if not chosen:
                 picture.text((u + 9, v - 7), f"{k}", side, size=20, fine=True)
         elif u == u:
-            role = "held" if chosen else "ghost"
-            picture.outside((u, v, 1.0), role, f"{k}", link=f"{k}", title=title(k), chosen=chosen)
-    if p.noise > 0.0:
-        measured = s.estimate.measured_left if side == "left" else s.estimate.measured_right
-        for u, v in measured.tolist():
-            if in_picture(u, v):
-                picture.cross((u, v), "ink", 7)
+            role, words = ("held", f"{k}") if chosen else ("ghost", "")
+            picture.outside((u, v, 1.0), role, words, link=f"{k}", title=title(k), chosen=chosen)
+    return picture
+
+
+def _measured(picture: Picture, pixels: Array) -> None:
+    """Pixels with their noise."""
+    for u, v in pixels.tolist():
+        if in_picture(u, v):
+            picture.cross((u, v), "ink", 7)
 
 
 def _held(picture: Picture, pixel: Pixel, side: Side, letter: str) -> None:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from sims.epipolar.drawn import EyeDrawn, distance
-from sims.epipolar.model import EpipolarParams, Pixel, Side, title
+from sims.epipolar.model import OTHERS, EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
@@ -36,13 +36,10 @@ def hold(name: str) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str
 
 def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
     """The finished plan."""
-    picture = _grid().copy()
+    picture = _others(p.points - 1, p.selected).copy()
     _eye(picture, p, "left", s.drawn.left, p.left_pan)
     _eye(picture, p, "right", s.drawn.right, p.right_pan)
     picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
-    for k, (x, y, _) in enumerate(s.points[1:].tolist(), start=2):
-        chosen = k == p.selected
-        picture.point(f"{k}", at(x, y), title(k), chosen=chosen, label=f"{k}" if chosen else "")
     held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, title(1))
     for (name, place, words), letter, link in zip(held, "LRP", ("", "", "1"), strict=True):
         spot = at(*place[:2])
@@ -58,6 +55,16 @@ def _grid() -> Picture:
     for k in range(-6, 7):
         picture.line(at(k, -9), at(k, 9), "ghost", width=0.3)
         picture.line(at(-9, k), at(9, k), "ghost", width=0.3)
+    return picture
+
+
+@lru_cache(maxsize=64)
+def _others(count: int, selected: int) -> Picture:
+    """The grid with the first of the points that stay where they are."""
+    picture = _grid().copy()
+    for k, (x, y, _) in enumerate(OTHERS[:count].tolist(), start=2):
+        chosen = k == selected
+        picture.point(f"{k}", at(x, y), title(k), chosen=chosen, label=f"{k}" if chosen else "")
     return picture
 
 

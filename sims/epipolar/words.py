@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 from sims.epipolar.drawn import in_picture
 from sims.epipolar.estimate import Estimate
-from sims.epipolar.model import EpipolarParams, Pixel
+from sims.epipolar.model import OTHERS, EpipolarParams, Pixel
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
@@ -14,6 +15,7 @@ RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
 RIGHT_LINE = "<msup><mi>l</mi><mo>′</mo></msup>"
 RIGHT_EPIPOLE = "<msup><mi>e</mi><mo>′</mo></msup>"
 TRANSPOSED = "<msup>{}<mi>T</mi></msup>"
+NUMBERS = tuple(f"{k}" for k in range(1, len(OTHERS) + 2))
 THOUSANDTHS = "×10⁻³"
 FARTHEST = 1e6
 """Pixels from which on an epipole's place is only said to be far."""
@@ -55,13 +57,13 @@ def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
 def _points(p: EpipolarParams, s: EpipolarSolution) -> Table:
     """Pixels of all points that are shown."""
     rows: list[tuple[str, ...]] = [("point", "u", "v", "u′", "v′")]
-    for k, (left, right) in enumerate(zip(s.pixels_left.tolist(), s.pixels_right.tolist(), strict=True), start=1):
-        rows.append(("P" if k == 1 else f"{k}", *_cells(*left), *_cells(*right)))
-    numbers = [f"{k}" for k in range(1, len(rows))]
+    for name, left, right in zip(("P", *NUMBERS[1:]), s.pixels_left.tolist(), s.pixels_right.tolist(), strict=False):
+        rows.append((name, *_cells(*left), *_cells(*right)))
     words = "Points: left and right pixel; in brackets what is outside the picture"
-    return Table(words, rows, numbers, f"{p.selected}")
+    return Table(words, rows, NUMBERS, f"{p.selected}")
 
 
+@lru_cache(maxsize=256)
 def _cells(u: float, v: float) -> tuple[str, str]:
     if u != u:
         return "–", "–"

@@ -156,7 +156,7 @@ class Picture:
         drawn = (
             f'<g data-link="{safe(link)}" class="{kind}" transform="translate({at[0]:.2f} {at[1]:.2f})">'
             f'<title>{safe(title)}</title><circle class="s3-reach" r="16"/>{ring}'
-            f'<circle class="s3-spot" r="5" fill="var(--{"held" if chosen else role})"/>{words}</g>'
+            f'<circle class="s3-spot" r="7" fill="var(--{"held" if chosen else role})"/>{words}</g>'
         )
         self._points.append((at[0], at[1], drawn))
 
@@ -214,11 +214,11 @@ class Picture:
 
     def _reachable(self) -> list[str]:
         """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
-        near, far = [], []
-        for x, y, drawn in self._points:
-            close = any(abs(x - u) < GRAB and abs(y - v) < GRAB for u, v, _ in self._handles)
-            (near if close else far).append(drawn)
-        return [*near, *(drawn for *_, drawn in self._handles), *far]
+        near, far = [], self._points
+        for u, v, _ in self._handles:
+            near += [point for point in far if abs(point[0] - u) < GRAB > abs(point[1] - v)]
+            far = [point for point in far if abs(point[0] - u) >= GRAB or abs(point[1] - v) >= GRAB]
+        return [drawn for *_, drawn in (*near, *self._handles, *far)]
 
 
 def _linked(link: str) -> str:
