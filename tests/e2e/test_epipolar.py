@@ -167,6 +167,7 @@ def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(clas
     row.press("Enter")
     agree(learner, selected=4, pick=None)
     learner.until(lambda: learner.pressed("4"))
+    learner.until(lambda: learner.lights("4", everywhere))  # also in what was drawn anew
     learner.until(lambda: frame.locator("svg .s3-selected").count() == 3)
     np.testing.assert_allclose(learner.scene.world_pose("/selected/ball")[:3, 3], OTHERS[2])
 

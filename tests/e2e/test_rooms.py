@@ -97,3 +97,28 @@ def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom:
         learner.sees(yaw=70, roll=5)
         assert learner.sockets.state["version"] == version + 1, "the watcher changed something"
     assert watcher.sockets.state["version"] == version + 1
+
+
+def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themselves(classroom: Classroom) -> None:
+    teacher = classroom.open("camera/embed")
+    watcher = classroom.open(watch_only(teacher.address))
+
+    def lit(learner: Learner, name: str) -> None:
+        learner.until(lambda: learner.lights(name, "g tr" if name else ""))
+        learner.until(lambda: learner.scene.visible("/lit") == (name != ""))
+
+    teacher.frame.get_by_role("button", name="Left cube, corner", exact=True).hover()
+    for learner in (teacher, watcher):
+        lit(learner, "cube-left")
+    teacher.page.mouse.move(*teacher.place((0, 0, 0)))
+    for learner in (teacher, watcher):
+        lit(learner, "")
+
+    row = watcher.frame.get_by_role("button", name="Near post, top", exact=True)
+    row.hover()
+    lit(watcher, "near-post")
+    row.click()
+    teacher.press_keys("pan", "ArrowRight")
+    watcher.sees(pan=1, selected="roof-near")
+    lit(watcher, "near-post")
+    lit(teacher, "")
