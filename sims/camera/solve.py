@@ -16,7 +16,7 @@ from geometry.camera import Camera, pan_tilt_roll
 from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
 from sims.camera.model import HEIGHT, WIDTH, CameraParams, CameraSolution, Frustum, Pixel
 from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES
-from sims.kit.pane import inside
+from sims.kit.frame import inside
 
 PICTURE_WIDTH = 1.2
 """Metres that the picture is wide where it stands in the scene; how far in front follows from the focal length."""

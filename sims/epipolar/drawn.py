@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.camera import Camera
 from sims.epipolar.model import CENTER, HEIGHT, WIDTH, Pixel, Place
-from sims.kit.pane import across, inside
+from sims.kit.frame import across, inside
 
 PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""

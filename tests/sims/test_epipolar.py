@@ -19,8 +19,8 @@ from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, plan, solve
 from sims.epipolar.model import OTHERS, PRESETS
 from sims.epipolar.pictures import panes
 from sims.kit import readout
+from sims.kit.frame import INSET
 from sims.kit.palette import LIGHT
-from sims.kit.pane import INSET
 from sims.kit.params import BadParams
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from sims.kit.frame import INSET, across, border, inside
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.pane import INSET, Pane, Picture, across, border, inside, render
+from sims.kit.pane import Pane, Picture, render
 from tests.sims.markup import bad_attributes, mistakes, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""

@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 from geometry.camera import parallel_rig
 from geometry.triangulation import covariance, monte_carlo
 from sims.kit import readout
+from sims.kit.frame import inside
 from sims.kit.palette import LIGHT
-from sims.kit.pane import inside
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
 from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, model, solve
