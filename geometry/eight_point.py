@@ -61,7 +61,8 @@ def eight_point(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> EightPoint:
 def _normalized(pixels: Array) -> tuple[Array, Array]:
     """A similarity (3, 3) to centroid 0 and mean distance √2, and the pixels (n, 3) after it."""
     centre = pixels.mean(axis=0)
-    spread = float(norm(pixels - centre).mean())
+    with np.errstate(over="ignore"):  # pixels beyond all bounds have no spread that counts: they fix nothing
+        spread = float(norm(pixels - centre).mean())
     scale = math.sqrt(2.0) / spread if spread > 1e-14 * float(np.abs(pixels).max()) else 1.0
     u, v = (-scale * centre).tolist()
     T = np.array([[scale, 0.0, u], [0.0, scale, v], [0.0, 0.0, 1.0]])

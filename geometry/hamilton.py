@@ -62,4 +62,5 @@ def to_ball(q: npt.ArrayLike) -> tuple[Array, Mask]:
         scale = 1.0 / (1.0 + w) if w >= 0.0 else beyond
     else:
         scale = np.where(w >= 0.0, 1.0 / np.maximum(1.0 + w, 1.0), beyond)
+    scale = scale + 0.0 * scale  # NaN where it is beyond all numbers
     return stack(scale * x, scale * y, scale * z), np.asarray(scale == scale)

@@ -15,12 +15,16 @@ def disparity(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Array:
 def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float) -> Array:
     """Return the depth Z = f b / d (...) in metres of a disparity (...) in pixels, NaN unless above 0.
 
+    It is NaN too where the depth is beyond all numbers.
+
     baseline in metres, focal in pixels, both above 0: GeometryError otherwise.
     Source: Szeliski 2022, "Computer Vision", eq. 12.1.
     """
     d = as_array("disparity", disparity)
     scale = as_number("focal", focal, above=0.0) * as_number("baseline", baseline, above=0.0)
-    return np.asarray(scale / np.where(np.isfinite(d) & (d > 0.0), d, np.nan))
+    with np.errstate(over="ignore"):
+        depth = scale / np.where(np.isfinite(d) & (d > 0.0), d, np.nan)
+    return np.asarray(np.where(np.isinf(depth), np.nan, depth))
 
 
 def depth_sigma(depth: npt.ArrayLike, baseline: float, focal: float, sigma: float) -> Array:

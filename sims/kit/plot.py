@@ -94,5 +94,5 @@ class Plot:
 
 
 def room(value: float, spare: float) -> float:
-    """A round end (1, 2 or 5 times a power of ten) for an axis that leaves a value some room."""
-    return step(value * spare, 1)
+    """A round end (1, 2 or 5 times a power of ten) for an axis that leaves a value some room; 1e-9 at least."""
+    return step(max(value * spare, 1e-9), 1)

@@ -35,6 +35,8 @@ PICTURE_WIDTH = 0.4
 """Metres that a picture is wide where it stands in the scene."""
 BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
 """Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
+UNSEEN = 1e-9
+"""Pixels of noise up to which nothing of it is seen."""
 
 
 class TriangulationParams(Params):
@@ -158,7 +160,7 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         closest_points=_existing(middle.closest),
         disparity=disparity,
         depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal))),
-        **_uncertainty(cameras, point, p.noise or 1.0),
+        **_uncertainty(cameras, point, p.noise if p.noise > UNSEEN else 1.0),
         parallax_angle=math.degrees(float(chosen.parallax)),
         in_front=bool(chosen.in_front),
         measured_left=left,

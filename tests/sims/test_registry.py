@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
+from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import pane, readout
 from sims.kit.palette import DARK, LIGHT
@@ -239,6 +242,24 @@ def test_on_a_phone_pictures_are_where_they_are_needed(sim: AnySim) -> None:
     assert order[-1] == "Read-outs"
     assert ("Pictures" in order) == (sim.panes is not None)
     assert (order[0] == "Pictures") == held
+
+
+@each_sim
+@pytest.mark.parametrize("tiny", [5e-324, 1e-200, 1e-155])
+def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim, tiny: float) -> None:
+    for base in ({}, *(() if sim.heavy else sim.states.values())):
+        start = sim.params().changed(base)
+        for name in NUMERIC[sim.slug]:
+            value = getattr(start, name)
+            spoiled = [tiny] if isinstance(value, float) else []
+            if isinstance(value, tuple):
+                spoiled = [(*value[:k], tiny, *value[k + 1 :]) for k in range(len(value))]
+            for one in spoiled:
+                with suppress(ValidationError, GeometryError):  # refused in words
+                    params = start.changed({name: one})
+                    solution = sim.solve(params)
+                    assert readout.render(sim.readouts(params, solution))
+                    assert sim.panes is None or sim.panes(params, solution, LIGHT)
 
 
 # ---- what hands do
