@@ -7,6 +7,8 @@ import numpy as np
 
 from ..arrays import Array, norm
 from ..errors import GeometryError
+from ..rotations import SMALLEST, axis_angle_to_matrix
+from ..se3 import transform
 
 WEAK = 1e-3
 """Share of the best direction's information, below which the data hardly say anything about one."""
@@ -50,7 +52,7 @@ def onto_points(p: Array, q: Array) -> Array:
         U, _, Vt = np.linalg.svd(H + (_LINE * values[0] or 1.0) * np.eye(3))
     U[:, 2] *= np.sign(np.linalg.det(U) * np.linalg.det(Vt))
     R = U @ Vt
-    return _pose(R, q_mean - R @ p_mean)
+    return transform(R, q_mean - R @ p_mean)
 
 
 def onto_planes(p: Array, q: Array, normals: Array) -> Array:
@@ -66,8 +68,10 @@ def onto_planes(p: Array, q: Array, normals: Array) -> Array:
     kept = values > 1e-10 * values[-1]
     gradient = vectors[:, kept].T @ (J.T @ np.vecdot(normals, q - p))
     turn_and_move = vectors[:, kept] @ (gradient / values[kept])
-    R = _turn(turn_and_move[:3] / lever)
-    return _pose(R, center + turn_and_move[3:] - R @ center)
+    turn, move = turn_and_move[:3] / lever, turn_and_move[3:]
+    angle = float(norm(turn))
+    R = axis_angle_to_matrix(turn, angle) if angle > SMALLEST else np.eye(3)
+    return transform(R, center + move - R @ center)
 
 
 def observability(p: Array, normals: Array | None = None) -> Observability:
@@ -98,19 +102,3 @@ def _centre(p: Array) -> tuple[Array, float]:
     center = p.mean(axis=0)
     offset = p - center
     return center, math.sqrt(float(np.vecdot(offset, offset).mean())) or 1.0
-
-
-def _turn(vector: Array) -> Array:
-    """Rotation by a rotation vector (3,). Source: Rodrigues' formula."""
-    angle = float(norm(vector))
-    x, y, z = vector.tolist()
-    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    half = math.sin(angle / 2.0) / (angle / 2.0) if angle > 0.0 else 1.0
-    sine = math.sin(angle) / angle if angle > 0.0 else 1.0
-    return np.asarray(np.eye(3) + sine * S + 0.5 * half * half * (S @ S))
-
-
-def _pose(R: Array, t: Array) -> Array:
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, t
-    return T

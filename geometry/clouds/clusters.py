@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from ..arrays import Array
 from ..errors import GeometryError, as_number
-from .points import Indices, Progress, as_cloud, columns, extent, silent
+from .points import Indices, Progress, as_cloud, measured, silent
 
 _PAIRS = 1 << 20  # of points, compared at once
 _MANY = 1 << 14  # pairs of points in two cells, from which on a tree is quicker
@@ -60,8 +60,7 @@ class _Grid:
     """Points sorted by cell, cells known by whole coordinates, and which cells are in one cluster so far."""
 
     def __init__(self, cloud: Array, distance: float) -> None:
-        xyz = columns(cloud)
-        low, high = extent(xyz)
+        xyz, low, high = measured(cloud)
         edge = distance / math.sqrt(3.0) * (1.0 - 1e-9)
         if float((high - low).max()) / edge > 2.0**50:
             raise GeometryError("distance", distance, "larger, for points so far apart")

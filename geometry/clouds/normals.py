@@ -8,8 +8,9 @@ import numpy.typing as npt
 from ..arrays import Array, Mask
 from ..errors import as_finite_array, as_number
 from .eigen import least_eigenvectors
+from .neighbourhoods import covariances
 from .neighbours import Neighbours
-from .points import Indices, Progress, in_chunks, silent
+from .points import Progress, in_chunks, silent
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,15 +48,16 @@ def normals(
     """
     near = points if isinstance(points, Neighbours) else Neighbours(points)
     count = min(int(as_number("neighbors", neighbors, least=3)), len(near))
-    vectors, values, defined = np.empty((len(near), 3)), np.empty((len(near), 3)), np.empty(len(near), bool)
+    seer = None if sensor is None else as_finite_array("sensor", sensor, 3)
+    found = Normals(np.empty((len(near), 3)), np.empty((len(near), 3)), np.empty(len(near), bool))
 
     def work(rows: slice) -> None:
-        _, places = near.nearest(rows, count)
-        values[rows], vectors[rows], defined[rows] = least_eigenvectors(_covariances(near, rows, places))
+        values, vectors, defined = least_eigenvectors(list(covariances(near, rows, count)))
+        place = near.order[rows]
+        orient(vectors, near.ordered[rows], seer if seer is None or seer.ndim == 1 else seer[place])
+        found.eigenvalues[place], found.normals[place], found.defined[place] = values, vectors, defined
 
     in_chunks(work, len(near), progress)
-    found = Normals(near.unordered(vectors), near.unordered(values), near.unordered(defined))
-    orient(found.normals, near.unordered(near.ordered), sensor)
     return found
 
 
@@ -67,13 +69,3 @@ def orient(vectors: Array, points: Array, sensor: npt.ArrayLike | None = None) -
         to_sensor = as_finite_array("sensor", sensor, 3) - points
         away = np.vecdot(vectors, to_sensor) < 0.0
     np.negative(vectors, out=vectors, where=away[:, None])
-
-
-def _covariances(near: Neighbours, rows: slice, places: Indices) -> list[Array]:
-    """The six entries of each neighbourhood's covariance, from coordinates relative to its own point."""
-    scale = 1.0 / places.shape[1]
-    offsets = [row[places] - row[rows, None] for row in near.xyz]
-    for offset in offsets:
-        offset -= scale * offset.sum(axis=1, keepdims=True)
-    pairs = (0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)
-    return [scale * np.einsum("nk,nk->n", offsets[i], offsets[j]) for i, j in pairs]

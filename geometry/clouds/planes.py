@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from ..arrays import Array, Mask, norm
 from ..errors import GeometryError, as_finite_array, as_number
+from ..rotations import unit
 from .points import Indices, as_cloud
 
 _SAMPLE = 1024  # points on which hypotheses are compared
@@ -52,7 +53,7 @@ def ransac_plane(
     Source: Fischler and Bolles 1981; the hypotheses are compared on a sample, the best of them on all points.
     """
     cloud, distance = as_cloud("points", points), as_number("distance", distance, above=0.0)
-    upwards = np.array([0.0, 0.0, 1.0]) if up is None else _unit(as_finite_array("up", up, 3))
+    upwards = np.array([0.0, 0.0, 1.0]) if up is None else unit(as_finite_array("up", up, 3), "up")
     steepest = math.cos(as_number("tilt", tilt, least=0.0)) if up is not None else -1.0
     if len(cloud) < 3:
         raise GeometryError("points", f"{len(cloud)} points", "at least three")
@@ -136,10 +137,3 @@ def _refined(centred: Array, center: Array, inliers: Mask, distance: float, up: 
         inliers = new
     assert found is not None
     return found
-
-
-def _unit(vector: Array) -> Array:
-    length = float(norm(vector))
-    if length == 0.0:
-        raise GeometryError("up", vector, "a vector with a direction")
-    return vector / length

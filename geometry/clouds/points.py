@@ -50,12 +50,19 @@ def bounds(points: npt.ArrayLike) -> tuple[Array, Array]:
     cloud = as_cloud("points", points)
     if not len(cloud):
         raise GeometryError("points", "no points", "at least one")
-    return extent(columns(cloud))
+    return measured(cloud)[1:]
 
 
-def extent(xyz: Array) -> tuple[Array, Array]:
-    """Least and greatest coordinates (3,) of contiguous columns (3, N)."""
-    return xyz.min(axis=1), xyz.max(axis=1)
+def measured(cloud: Array) -> tuple[Array, Array, Array]:
+    """Return points' `columns` (3, N), and their least and greatest coordinates (3,): of one point at least."""
+    xyz, ends = np.empty((3, len(cloud))), list[tuple[Array, Array]]()
+
+    def work(rows: slice) -> None:
+        xyz[:, rows] = cloud[rows].T
+        ends.append((xyz[:, rows].min(axis=1), xyz[:, rows].max(axis=1)))
+
+    in_chunks(work, len(cloud), size=32_768)
+    return xyz, np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
 
 
 def in_chunks(work: Callable[[slice], None], length: int, progress: Progress = silent, size: int = CHUNK) -> None:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..arrays import Array
 from ..errors import GeometryError, as_array, as_finite_array, as_number
-from .points import Indices, as_cloud, columns, extent, in_chunks
+from .points import CHUNK, Indices, as_cloud, columns, in_chunks, measured
 
 _DENSE = 16
 """Cells of the whole grid, per point, up to which a table of all cells is quicker than sorting."""
@@ -57,15 +57,13 @@ def voxels(points: npt.ArrayLike, size: float, *, origin: npt.ArrayLike | None =
     cloud, size = as_array("points", points, 3), as_number("size", size, above=0.0)
     if not cloud.size or cloud.ndim != 2:
         return _no_voxels(as_cloud("points", cloud), size)
-    xyz = columns(cloud)
-    low, high = extent(xyz)
+    xyz, low, high = measured(cloud)
     if not np.isfinite([low, high]).all():
         as_cloud("points", cloud)
     start = low - 0.5 * size if origin is None else as_finite_array("origin", origin, 3)
     if np.abs([low - start, high - start]).max() / size > _MOST:
         raise GeometryError("size", size, "larger, for points so far from the grid's origin")
-    xyz -= start[:, None]
-    keys, cells = cell_keys(xyz, size, low - start, high - start)
+    keys, cells = cell_keys(xyz, start, size, low, high)
     if cells <= _DENSE * len(keys) + 4096:
         counts = np.bincount(keys, minlength=cells)
         filled = np.flatnonzero(counts)
@@ -83,9 +81,13 @@ def _no_voxels(cloud: Array, size: float) -> Voxels:
 def _means(labels: Indices, counts: Indices, filled: Indices | slice, rows: Array) -> Array:
     number = counts[filled]
     means = np.empty((len(number), len(rows)))
-    for column, row in enumerate(rows):
-        sums = np.bincount(labels, weights=row, minlength=len(counts))
-        means[:, column] = sums[filled] / number
+
+    def work(some: slice) -> None:
+        for column in range(some.start, some.stop):
+            sums = np.bincount(labels, weights=rows[column], minlength=len(counts))
+            means[:, column] = sums[filled] / number
+
+    in_chunks(work, len(rows), size=1 if len(labels) > CHUNK else len(rows))
     return means
 
 
@@ -96,19 +98,22 @@ def _numbers(filled: Indices, cells: int) -> Indices:
     return number
 
 
-def cell_keys(xyz: Array, size: float, low: Array, high: Array) -> tuple[Indices, int]:
+def cell_keys(xyz: Array, start: Array, size: float, low: Array, high: Array) -> tuple[Indices, int]:
     """One number for each point's cell, in the cells' order, and how many numbers there may be.
 
-    `low` and `high` (3,) are the least and greatest coordinates of the columns (3, N).
+    The columns (3, N) are moved, in place, to the grid's start (3,). `low` and `high` (3,) are the least and greatest
+    coordinates that they had.
     """
-    first, last = np.floor(low / size), np.floor(high / size)
+    first, last = np.floor((low - start) / size), np.floor((high - start) / size)
     lengths = [int(length) for length in (last - first + 1.0).tolist()]
     cells = math.prod(lengths)
     if cells >= _MOST:
+        xyz -= start[:, None]
         return _long_keys(xyz, size)
     keys = np.empty(xyz.shape[1], np.int64)
 
     def work(rows: slice) -> None:
+        xyz[:, rows] -= start[:, None]
         number = np.floor(xyz[0, rows] / size)  # whole numbers below 2^53: float64 holds them, and is quicker
         number -= first[0]
         for axis in (1, 2):
