@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, norm
+from ..arrays import Array, cross, dot, norm
 from ..errors import GeometryError
 from ..rotations import SMALLEST, axis_angle_to_matrix
 from ..se3 import transform
+from .points import columns
 
 WEAK = 1e-3
 """Share of the best direction's information, below which the data hardly say anything about one."""
@@ -45,8 +46,9 @@ def onto_points(p: Array, q: Array) -> Array:
     """
     if not len(p):
         raise GeometryError("p", "no points", "at least one")
-    p_mean, q_mean = p.mean(axis=0), q.mean(axis=0)
-    H = (q - q_mean).T @ (p - p_mean)
+    p_mean, from_p = _centred(p)
+    q_mean, from_q = _centred(q)
+    H = from_q @ from_p.T
     U, values, Vt = np.linalg.svd(H)
     if values[1] <= _LINE * values[0]:
         U, _, Vt = np.linalg.svd(H + (_LINE * values[0] or 1.0) * np.eye(3))
@@ -64,9 +66,9 @@ def onto_planes(p: Array, q: Array, normals: Array) -> Array:
     if not len(p):
         raise GeometryError("p", "no points", "at least one")
     center, lever, J = _jacobian(p, normals)
-    values, vectors = np.linalg.eigh(J.T @ J)
+    values, vectors = np.linalg.eigh(J @ J.T)
     kept = values > 1e-10 * values[-1]
-    gradient = vectors[:, kept].T @ (J.T @ np.vecdot(normals, q - p))
+    gradient = vectors[:, kept].T @ (J @ dot(J[3:], columns(q - p)))
     turn_and_move = vectors[:, kept] @ (gradient / values[kept])
     turn, move = turn_and_move[:3] / lever, turn_and_move[3:]
     angle = float(norm(turn))
@@ -83,22 +85,31 @@ def observability(p: Array, normals: Array | None = None) -> Observability:
         raise GeometryError("p", "no points", "at least one")
     if normals is not None:
         center, lever, J = _jacobian(p, normals)
-        information = J.T @ J / len(p)
+        information = J @ J.T / len(p)
     else:
-        center, lever = _centre(p)
-        r = (p - center) / lever
-        inertia = np.vecdot(r, r).mean() * np.eye(3) - r.T @ r / len(p)
+        center, offsets = _centred(p)
+        lever = _lever(offsets)
+        scatter = offsets @ offsets.T / (len(p) * lever * lever)
+        inertia = np.trace(scatter) * np.eye(3) - scatter
         information = np.block([[inertia, np.zeros((3, 3))], [np.zeros((3, 3)), np.eye(3)]])
     values, vectors = np.linalg.eigh(information)
     return Observability(np.maximum(values, 0.0), vectors.T, center, lever)
 
 
 def _jacobian(p: Array, normals: Array) -> tuple[Array, float, Array]:
-    center, lever = _centre(p)
-    return center, lever, np.concatenate([np.cross((p - center) / lever, normals), normals], axis=1)
+    """Center (3,), lever, and each point's six derivatives of its distance from the plane, in columns (6, N)."""
+    center, offsets = _centred(p)
+    lever, n = _lever(offsets), columns(normals)
+    return center, lever, np.concatenate([cross(offsets / lever, n), n])
 
 
-def _centre(p: Array) -> tuple[Array, float]:
-    center = p.mean(axis=0)
-    offset = p - center
-    return center, math.sqrt(float(np.vecdot(offset, offset).mean())) or 1.0
+def _centred(p: Array) -> tuple[Array, Array]:
+    """The points' mean (3,), and their columns (3, N) from there."""
+    xyz = columns(p)
+    center = xyz.mean(axis=1)
+    xyz -= center[:, None]
+    return center, xyz
+
+
+def _lever(offsets: Array) -> float:
+    return math.sqrt(float(dot(offsets, offsets).mean())) or 1.0

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..arrays import Array, Mask
+from ..arrays import Array, Mask, dot
 from .neighbours import Neighbours
 from .points import Indices
 
@@ -14,17 +14,18 @@ _ROUNDED = 4e-6
 """What float32 may say wrong about a squared distance, as part of the candidates' squared radius: 64 roundings."""
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # groups in one place have no radius: NaN is never sure
 def covariances(near: Neighbours, rows: slice, count: int) -> Array:
     """Return xx, xy, xz, yy, yz, zz (6, n) of the covariance of the nearest points of some ordered rows.
 
     Rows are put together in groups, and the tree is asked for the points nearest to a group's centre c: all within
-    a radius r of it. A member p whose neighbours are within r − ‖p − c‖ finds them all among these, and a product
-    of matrices compares them: several times as quick as to ask the tree for each point. Who can't be sure, of that
-    or of the last neighbour being nearer than the next by more than rounding, asks alone.
+    a radius r of it. A member p whose neighbours are within r − ‖p − c‖ finds them all among these, and products of
+    matrices compare and average them: quicker than to ask the tree for each point. Who can't be sure, of that or of
+    the last neighbour being nearer than the next by more than rounding, asks alone.
     """
     xyz = near.xyz[:, rows]
     result, sure = np.empty((6, xyz.shape[1])), np.zeros(xyz.shape[1], bool)
-    groups = _groups(xyz, count)
+    groups = _groups(xyz, count + count // 2)
     candidates = _candidates(groups.shape[1], count)
     if candidates < len(near):
         for first in range(0, len(groups), _PART):
@@ -66,24 +67,28 @@ def _together(near: Neighbours, members: Array, count: int, candidates: int) -> 
     center = members.mean(axis=2, keepdims=True)
     distance, places = near.tree.query(center[..., 0].T, candidates)
     radius = distance[:, -1:]
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        p, q = (members - center) / radius, np.empty((9, *places.shape))
-        q[:3] = (near.xyz.take(places, axis=1) - center) / radius
-        for row, (i, j) in enumerate(_PAIRS, 3):
-            np.multiply(q[i], q[j], out=q[row])
-        left, right = np.ones((*p.shape[1:], 4), np.float32), np.empty((len(places), 4, candidates), np.float32)
-        left[..., :3] = -2.0 * np.moveaxis(p, 0, 2)
-        right[:, :3] = np.moveaxis(q[:3], 0, 1)
-        right[:, 3] = q[3] + q[6] + q[8]
-        compared = left @ right  # squared distances, less ‖p‖²
-        smallest = np.partition(compared, count, axis=2)
-        last, beyond = smallest[..., :count].max(axis=2), smallest[..., count]
-        square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
-        sure = (beyond - last > _ROUNDED) & (last + square + _ROUNDED < np.maximum(1.0 - np.sqrt(square), 0.0) ** 2)
-        chosen = (compared <= last[..., None]).astype(np.float64)
-        means = np.moveaxis(q, 0, 1) @ chosen.transpose(0, 2, 1) / count
-        spread = [means[:, row] - means[:, i] * means[:, j] for row, (i, j) in enumerate(_PAIRS, 3)]
-        return sure, np.stack(spread) * (radius * radius)
+    p, q = (members - center) / radius, np.empty((9, *places.shape))
+    q[:3] = (near.xyz.take(places, axis=1) - center) / radius
+    q[3:6] = q[:3] * q[0]
+    q[6:8] = q[1:3] * q[1]
+    q[8] = q[2] * q[2]
+    left = np.ones((*places.shape[:1], p.shape[2], 4), np.float32)
+    left[..., :3] = p.transpose(1, 2, 0)
+    right = np.empty((len(places), 4, candidates), np.float32)
+    right[:, :3] = q[:3].transpose(1, 0, 2)
+    right[:, :3] *= -2.0
+    right[:, 3] = q[3] + q[6] + q[8]
+    compared = left @ right  # squared distances, less ‖p‖²
+    smallest = np.partition(compared, count, axis=2)
+    last, beyond = smallest[..., :count].max(axis=2), smallest[..., count]
+    square = dot(p, p)
+    sure = (beyond - last > _ROUNDED) & (last + square + _ROUNDED < np.maximum(1.0 - np.sqrt(square), 0.0) ** 2)
+    chosen = (compared <= last[..., None]).astype(np.float64)
+    means = (q.transpose(1, 0, 2) @ chosen.transpose(0, 2, 1)).transpose(1, 0, 2) / count
+    means[3:6] -= means[:3] * means[0]
+    means[6:8] -= means[1:3] * means[1]
+    means[8] -= means[2] * means[2]
+    return sure, means[3:] * (radius * radius)
 
 
 def _alone(near: Neighbours, rows: Indices, count: int) -> Array:

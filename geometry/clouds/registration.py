@@ -3,17 +3,18 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, norm
+from ..arrays import Array, dot
 from ..errors import GeometryError, as_choice, as_finite_array, as_number
 from ..se3 import apply
 from .alignment import Observability, observability, onto_planes, onto_points
 from .neighbours import Neighbours, spatial_order
 from .normals import normals as estimate_normals
-from .points import THREADS, Indices, Progress, as_cloud, silent
+from .points import THREADS, Indices, Progress, as_cloud, columns, silent
 
 METHODS = ("point", "plane")
 SETTLED = 1e-6
@@ -57,17 +58,25 @@ class Target:
 
     def __init__(self, points: npt.ArrayLike, normals: npt.ArrayLike | None = None, neighbors: int = 16) -> None:
         self.near = Neighbours(points)
-        self.points = np.empty_like(self.near.ordered)
-        self.points[self.near.order] = self.near.ordered
         self._neighbors = neighbors
         self._normals = None if normals is None else as_finite_array("normals", normals, 3)
 
-    @property
+    @cached_property
+    def points(self) -> Array:
+        """The cloud as it was given, (N, 3)."""
+        return self.near.unordered(self.near.ordered)
+
+    @cached_property
     def normals(self) -> Array:
         """Unit normals (N, 3): the given ones, or estimated; zero, which says nothing, where there is none."""
         if self._normals is None:
-            self._normals = np.nan_to_num(estimate_normals(self.points, self._neighbors).normals, nan=0.0)
+            return np.nan_to_num(estimate_normals(self.near, self._neighbors).normals, nan=0.0)
         return self._normals
+
+    @cached_property
+    def facing(self) -> Array:
+        """The normals of `near.ordered`, in columns (3, N)."""
+        return columns(self.normals.take(self.near.order, axis=0))
 
 
 class _Pairs:
@@ -77,33 +86,37 @@ class _Pairs:
     that one: in the small steps near the end hardly any point needs the tree.
     """
 
-    def __init__(self, goal: Target, points: Array, reach: float) -> None:
+    def __init__(self, goal: Target, xyz: Array, reach: float) -> None:
         self.goal, self.reach = goal, reach
-        self.asked = points.copy()
-        self.near = np.full(len(points), -1, np.intp)
-        self.slack = np.zeros(len(points))
-        self.distance = np.empty(len(points))
+        self.asked = xyz.copy()
+        self.near = np.full(xyz.shape[1], -1, np.intp)
+        self.slack = np.zeros(xyz.shape[1])
+        self.distance = np.empty(xyz.shape[1])
 
-    def update(self, points: Array) -> None:
-        moved = points - self.asked
-        self._ask(points, np.flatnonzero(~(norm(moved) < self.slack)))
-        offsets = points - self.goal.points[self.near]
-        self.distance = np.where(self.near >= 0, norm(offsets), np.inf)
+    def update(self, xyz: Array) -> None:
+        """Find the partners of points that have moved to columns (3, N)."""
+        self._ask(xyz, np.flatnonzero(~(_lengths(xyz - self.asked) < self.slack)))
+        offsets = xyz - self.goal.near.xyz.take(self.near, axis=1)
+        self.distance = np.where(self.near >= 0, _lengths(offsets), np.inf)
 
-    def _ask(self, points: Array, rows: Indices) -> None:
-        farthest = 1.25 * self.reach
+    def _ask(self, xyz: Array, rows: Indices) -> None:
+        farthest, points = 1.25 * self.reach, xyz.take(rows, axis=1)
         tree = self.goal.near.tree
-        distance, place = tree.query(points[rows], 2, distance_upper_bound=farthest, workers=THREADS)
+        distance, place = tree.query(points.T, 2, distance_upper_bound=farthest, workers=THREADS)
         first, second = np.minimum(distance, farthest).T
-        found = place[:, 0] < len(self.goal.points)
-        self.near[rows] = np.where(found, self.goal.near.order[np.where(found, place[:, 0], 0)], -1)
+        found = place[:, 0] < len(self.goal.near)
+        self.near[rows] = np.where(found, place[:, 0], -1)
         self.slack[rows] = np.where(found, 0.5 * (second - first), farthest - self.reach) * (1.0 - 1e-9)
-        self.asked[rows] = points[rows]
+        self.asked[:, rows] = points
 
     @property
     def partner(self) -> Indices:
-        """Index of the target point within reach, or −1."""
+        """Place in `near.ordered` of the target point within reach, or −1."""
         return np.where(self.distance <= self.reach, self.near, -1)
+
+
+def _lengths(xyz: Array) -> Array:
+    return np.asarray(np.sqrt(dot(xyz, xyz)))
 
 
 def icp(
@@ -126,21 +139,21 @@ def icp(
     p = as_cloud("source", source)
     goal = target if isinstance(target, Target) else Target(target)
     as_choice("method", method, METHODS), as_number("reach", reach, above=0.0)
-    if not len(p) or not len(goal.points):
+    if not len(p) or not len(goal.near):
         raise GeometryError("target" if len(p) else "source", "no points", "at least one")
     order = spatial_order(p)  # near points take near ways through the tree
-    p = p[order]
+    xyz = columns(p.take(order, axis=0))
     T = np.eye(4) if start is None else as_finite_array("start", start, 4, 4)
-    moved = apply(T, p)
+    moved = _moved(T, xyz)
     pairs = _Pairs(goal, moved, reach)
     now, partner = _seen(pairs, moved, T, order)
     yield now
     for _ in range(most):
-        paired = partner >= 0
-        if np.count_nonzero(paired) < (3 if method == "point" else 6):
+        paired = np.flatnonzero(partner >= 0)
+        if len(paired) < (3 if method == "point" else 6):
             return
-        T = _better(goal, moved[paired], partner[paired], method) @ T
-        moved = apply(T, p)
+        T = _better(goal, moved.take(paired, axis=1), partner.take(paired), method) @ T
+        moved = _moved(T, xyz)
         before, (now, partner) = now, _seen(pairs, moved, T, order)
         yield now
         if _same(before, now, settled):
@@ -167,7 +180,7 @@ def register(
     """
     p = as_cloud("source", source)
     goal = target if isinstance(target, Target) else Target(target)
-    ordered = p[spatial_order(p)]
+    ordered = p.take(spatial_order(p), axis=0)
     counts = [int(as_number("thin", every, least=1)) for every in thin]
     levels = [ordered[::every] for every in counts if len(p) >= _FEWEST * every] + [p]
     T = np.eye(4) if start is None else as_finite_array("start", start, 4, 4)
@@ -180,14 +193,19 @@ def register(
         T = steps[-1].T_target_source
     progress(1.0)
     converged = len(steps) - first > 1 and _same(steps[-2], steps[-1], settled)
-    return Registration(T, tuple(steps), converged, _certainty(goal, apply(T, p), steps[-1].target, method))
+    return Registration(T, tuple(steps), converged, _certainty(goal, p, steps[-1], method))
 
 
-def _certainty(goal: Target, moved: Array, target: Indices, method: str) -> Observability | None:
-    paired = target >= 0
-    if not paired.any():
+def _certainty(goal: Target, p: Array, last: Step, method: str) -> Observability | None:
+    paired = np.flatnonzero(last.target >= 0)
+    if not len(paired):
         return None
-    return observability(moved[paired], goal.normals[target[paired]] if method == "plane" else None)
+    normals = goal.normals.take(last.target[paired], axis=0) if method == "plane" else None
+    return observability(apply(last.T_target_source, p.take(paired, axis=0)), normals)
+
+
+def _moved(T: Array, xyz: Array) -> Array:
+    return np.asarray(T[:3, :3] @ xyz + T[:3, 3:])
 
 
 def _seen(pairs: _Pairs, moved: Array, T: Array, order: Indices) -> tuple[Step, Indices]:
@@ -197,14 +215,15 @@ def _seen(pairs: _Pairs, moved: Array, T: Array, order: Indices) -> tuple[Step, 
     error = float(near @ near)
     rmse = math.sqrt(error / len(near)) if len(near) else math.nan
     target = np.empty_like(partner)
-    target[order] = partner
-    return Step(T, error, len(near) / len(moved), rmse, target), partner
+    target[order] = np.where(partner >= 0, pairs.goal.near.order.take(partner), -1)
+    return Step(T, error, len(near) / len(partner), rmse, target), partner
 
 
 def _better(goal: Target, p: Array, partner: Indices, method: str) -> Array:
+    q = goal.near.xyz.take(partner, axis=1).T
     if method == "point":
-        return onto_points(p, goal.points[partner])
-    return onto_planes(p, goal.points[partner], goal.normals[partner])
+        return onto_points(p.T, q)
+    return onto_planes(p.T, q, goal.facing.take(partner, axis=1).T)
 
 
 def _same(before: Step, now: Step, settled: float) -> bool:
