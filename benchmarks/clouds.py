@@ -143,24 +143,25 @@ def _registrations(open3d: Any, count: int) -> Iterator[Case]:
     source = se3.apply(se3.inverse(T), other)
     p, q = _cloud(open3d, source), _cloud(open3d, target)
     pipeline = open3d.pipelines.registration
-    criteria = pipeline.ICPConvergenceCriteria(clouds.SETTLED, clouds.SETTLED, 100)
     search = open3d.geometry.KDTreeSearchParamKNN(NEIGHBORS)
 
-    def theirs(method: str) -> Array:
+    def theirs(method: str, most: int = 100, settled: float = clouds.SETTLED) -> Array:
         goal = open3d.geometry.PointCloud(q)
         way = pipeline.TransformationEstimationPointToPoint()
         if method == "plane":
             goal.estimate_normals(search)
             way = pipeline.TransformationEstimationPointToPlane()
+        criteria = pipeline.ICPConvergenceCriteria(settled, settled, most)
         return np.asarray(pipeline.registration_icp(p, goal, 0.5, np.eye(4), way, criteria).transformation)
 
-    def ours(method: str, thin: tuple[int, ...]) -> Array:
-        found = clouds.register(source, target, 0.5, method=method, thin=thin, most=100)
+    def ours(method: str, thin: tuple[int, ...], most: int = 100, settled: float = clouds.SETTLED) -> Array:
+        found = clouds.register(source, target, 0.5, method=method, thin=thin, most=most, settled=settled)
         return found.T_target_source
 
-    def poses(mine: Array, other: Array) -> str:
+    def poses(method: str, mine: Array, other: Array) -> str:
         off, beside = (_apart(T, pose) for pose in (mine, other))
-        return f"{off * 1e3:.3f} mm from the truth, theirs {beside * 1e3:.3f}, apart {_apart(mine, other):.1e} m"
+        after = _apart(ours(method, (), 30, 0.0), theirs(method, 30, 0.0))
+        return f"{off * 1e3:.3f} mm from the truth, theirs {beside * 1e3:.3f}; {after:.0e} m apart after 30 steps each"
 
     for method in ("point", "plane"):
         for name, thin in (("same steps", ()), ("coarse to fine", (64, 8))):
@@ -168,7 +169,7 @@ def _registrations(open3d: Any, count: int) -> Iterator[Case]:
                 f"ICP to {method}s, 100 k, {name}",
                 partial(ours, method, thin),
                 partial(theirs, method),
-                poses,
+                partial(poses, method),
                 2,
             )
 

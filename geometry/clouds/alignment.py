@@ -9,7 +9,7 @@ from ..arrays import Array, cross, dot, norm
 from ..errors import GeometryError
 from ..rotations import SMALLEST, axis_angle_to_matrix
 from ..se3 import transform
-from .points import columns
+from .points import columns, squares
 
 WEAK = 1e-3
 """Share of the best direction's information, below which the data hardly say anything about one."""
@@ -68,7 +68,7 @@ def onto_planes(p: Array, q: Array, normals: Array) -> Array:
     center, lever, J = _jacobian(p, normals)
     values, vectors = np.linalg.eigh(J @ J.T)
     kept = values > 1e-10 * values[-1]
-    gradient = vectors[:, kept].T @ (J @ dot(J[3:], columns(q - p)))
+    gradient = vectors[:, kept].T @ (J @ dot(list(J[3:]), list(columns(q - p))))
     turn_and_move = vectors[:, kept] @ (gradient / values[kept])
     turn, move = turn_and_move[:3] / lever, turn_and_move[3:]
     angle = float(norm(turn))
@@ -100,7 +100,7 @@ def _jacobian(p: Array, normals: Array) -> tuple[Array, float, Array]:
     """Center (3,), lever, and each point's six derivatives of its distance from the plane, in columns (6, N)."""
     center, offsets = _centred(p)
     lever, n = _lever(offsets), columns(normals)
-    return center, lever, np.concatenate([cross(offsets / lever, n), n])
+    return center, lever, np.concatenate([cross(list(offsets / lever), list(n)), n])
 
 
 def _centred(p: Array) -> tuple[Array, Array]:
@@ -112,4 +112,4 @@ def _centred(p: Array) -> tuple[Array, Array]:
 
 
 def _lever(offsets: Array) -> float:
-    return math.sqrt(float(dot(offsets, offsets).mean())) or 1.0
+    return math.sqrt(float(squares(offsets).mean())) or 1.0

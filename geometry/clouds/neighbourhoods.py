@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from ..arrays import Array, Mask, dot
+from ..arrays import Array, Mask
 from .neighbours import Neighbours
-from .points import Indices
+from .points import Indices, squares
 
 _PAIRS = (0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)
 _PART = 128  # groups at a time: their distances stay in the cache
@@ -47,7 +47,7 @@ def _groups(xyz: Array, least: int) -> Indices:
 
     A few may be left over.
     """
-    halvings = max(0, int(math.log2(xyz.shape[1] / least)))
+    halvings = max(0, (xyz.shape[1] // least).bit_length() - 1)
     groups = np.arange(xyz.shape[1] >> halvings << halvings)[None]
     for _ in range(halvings):
         members = xyz.take(groups, axis=1)
@@ -81,7 +81,7 @@ def _together(near: Neighbours, members: Array, count: int, candidates: int) -> 
     compared = left @ right  # squared distances, less ‖p‖²
     smallest = np.partition(compared, count, axis=2)
     last, beyond = smallest[..., :count].max(axis=2), smallest[..., count]
-    square = dot(p, p)
+    square = squares(p)
     sure = (beyond - last > _ROUNDED) & (last + square + _ROUNDED < np.maximum(1.0 - np.sqrt(square), 0.0) ** 2)
     chosen = (compared <= last[..., None]).astype(np.float64)
     means = (q.transpose(1, 0, 2) @ chosen.transpose(0, 2, 1)).transpose(1, 0, 2) / count

@@ -48,13 +48,13 @@ def normals(
     """
     near = points if isinstance(points, Neighbours) else Neighbours(points)
     count = min(int(as_number("neighbors", neighbors, least=3)), len(near))
-    seer = None if sensor is None else as_finite_array("sensor", sensor, 3)
+    seen_from = None if sensor is None else np.broadcast_to(as_finite_array("sensor", sensor, 3), (len(near), 3))
     found = Normals(np.empty((len(near), 3)), np.empty((len(near), 3)), np.empty(len(near), bool))
 
     def work(rows: slice) -> None:
         values, vectors, defined = least_eigenvectors(list(covariances(near, rows, count)))
         place = near.order[rows]
-        orient(vectors, near.ordered[rows], seer if seer is None or seer.ndim == 1 else seer[place])
+        orient(vectors, near.ordered[rows], None if seen_from is None else seen_from[place])
         found.eigenvalues[place], found.normals[place], found.defined[place] = values, vectors, defined
 
     in_chunks(work, len(near), progress)

@@ -42,6 +42,12 @@ def columns(array: Array) -> Array:
     return array.T.copy(order="C")
 
 
+def squares(xyz: Array) -> Array:
+    """Return the squared lengths (...) of vectors in columns (3, ...)."""
+    x, y, z = xyz
+    return np.asarray(x * x + y * y + z * z)
+
+
 def bounds(points: npt.ArrayLike) -> tuple[Array, Array]:
     """Return the least and the greatest coordinates (3,) of points (N, 3), in metres.
 

@@ -8,13 +8,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, dot
+from ..arrays import Array
 from ..errors import GeometryError, as_choice, as_finite_array, as_number
 from ..se3 import apply
 from .alignment import Observability, observability, onto_planes, onto_points
 from .neighbours import Neighbours, spatial_order
 from .normals import normals as estimate_normals
-from .points import THREADS, Indices, Progress, as_cloud, columns, silent
+from .points import THREADS, Indices, Progress, as_cloud, columns, silent, squares
 
 METHODS = ("point", "plane")
 SETTLED = 1e-6
@@ -116,7 +116,7 @@ class _Pairs:
 
 
 def _lengths(xyz: Array) -> Array:
-    return np.asarray(np.sqrt(dot(xyz, xyz)))
+    return np.asarray(np.sqrt(squares(xyz)))
 
 
 def icp(

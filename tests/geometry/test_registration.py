@@ -72,6 +72,37 @@ def test_a_moved_cloud_is_found_again(method: str, seed: int) -> None:
     assert found.last.rmse < 1e-6
 
 
+def written_out(source: Array, target: Array, facing: Array | None, reach: float, steps: int) -> Array:
+    """ICP by SciPy: a new search for all pairs at each step, each step by least squares."""
+    tree, T = cKDTree(target), np.eye(4)
+    for _ in range(steps):
+        p = se3.apply(T, source)
+        distance, place = tree.query(p)
+        p, q, place = p[distance <= reach], target[place][distance <= reach], place[distance <= reach]
+        if facing is None:
+            R = Rotation.align_vectors(q - q.mean(axis=0), p - p.mean(axis=0))[0].as_matrix()
+            T = pose(R, q.mean(axis=0) - R @ p.mean(axis=0)) @ T
+        else:
+            n, center = facing[place], p.mean(axis=0)
+            J = np.concatenate([np.cross(p - center, n), n], axis=1)
+            turn, move = np.split(np.linalg.lstsq(J, np.vecdot(n, q - p))[0], 2)
+            R = Rotation.from_rotvec(turn).as_matrix()
+            T = pose(R, center + move - R @ center) @ T
+    return T
+
+
+@pytest.mark.parametrize("method", ["point", "plane"])
+@settings(max_examples=8)
+@given(seed=seeds)
+def test_the_same_steps_from_the_same_start_come_to_the_same_pose(method: str, seed: int) -> None:
+    target = wavy(seed, 1500, 0.01)
+    source = se3.apply(se3.inverse(small_pose(seed)), wavy(seed + 1, 1500, 0.01))
+    facing = normals(target).normals if method == "plane" else None
+    expected = written_out(source, target, facing, 0.5, 30)
+    found = register(source, target, 0.5, method=method, thin=(), most=30, settled=0.0)
+    np.testing.assert_allclose(found.T_target_source, expected, rtol=0, atol=1e-9)
+
+
 @settings(max_examples=10)
 @given(seeds)
 def test_point_to_point_never_makes_the_error_larger(seed: int) -> None:
@@ -167,8 +198,9 @@ def test_given_normals_are_used() -> None:
     target = Target(points, np.tile([0.0, 0.0, 1.0], (500, 1)))
     found = register(points + np.array([0.1, 0.0, 0.05]), target, 0.5)
     assert found.T_target_source[0, 3] == pytest.approx(0.0, abs=0.02)  # nothing pulls it along x
-    own = Target(points, normals(points).normals)
-    assert len(own.normals) == 500
+    moved = se3.apply(small_pose(5), points)
+    own = register(moved, Target(points, normals(points).normals), 0.5)
+    np.testing.assert_array_equal(own.T_target_source, register(moved, points, 0.5).T_target_source)
 
 
 @pytest.mark.parametrize(
