@@ -64,16 +64,16 @@ class _Grid:
         edge = distance / math.sqrt(3.0) * (1.0 - 1e-9)
         if float((high - low).max()) / edge > 2.0**50:
             raise GeometryError("distance", distance, "larger, for points so far apart")
-        cells = np.floor((xyz - low[:, None]) / edge).astype(np.int64).T
-        self.order = np.lexsort(cells.T[::-1])
-        self.points = cloud[self.order]
-        ordered = cells[self.order]
+        cells = np.floor((xyz - low[:, None]) / edge).astype(np.int64)
+        self.order = np.lexsort(cells[::-1])
+        self.points = cloud.take(self.order, axis=0)
+        ordered = cells.take(self.order, axis=1)
         first = np.ones(len(cloud), bool)
-        first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+        first[1:] = (ordered[:, 1:] != ordered[:, :-1]).any(axis=0)
         self.starts = np.flatnonzero(first)
         self.counts = np.diff(self.starts, append=len(cloud))
         self.cell_of_point = np.cumsum(first) - 1
-        self.key = _Keys(ordered[self.starts])
+        self.key = _Keys(ordered.take(self.starts, axis=1))
         self.group = np.arange(len(self.starts))
         self.limit = distance
 
@@ -86,8 +86,9 @@ class _Grid:
         """Join near cells whose first points are near; return the pairs of near cells that may yet be joined."""
         near: list[tuple[Indices, Indices]] = []
         unsure: list[tuple[Indices, Indices]] = []
+        heads = self.points.take(self.starts, axis=0)
         for a, b in self.key.near_pairs():
-            linked = self._within(self.points[self.starts[a]], self.points[self.starts[b]])
+            linked = self._within(heads.take(a, axis=0), heads.take(b, axis=0))
             near.append((a[linked], b[linked]))
             rest = ~linked & (self.counts[a] * self.counts[b] > 1)
             unsure.append((a[rest], b[rest]))
@@ -148,10 +149,10 @@ def _joined(pairs: list[tuple[Indices, Indices]]) -> tuple[Indices, Indices]:
 
 
 class _Keys:
-    """Cells (M, 3) that are sorted by x, y and z, found again as neighbours of each other."""
+    """Cells, columns (3, M), that are sorted by x, y and z, found again as neighbours of each other."""
 
     def __init__(self, cells: Indices) -> None:
-        x, y, z = (_bridged(column) for column in cells.T)
+        x, y, z = (_bridged(column) for column in cells)
         self.across, self.high = int(y.max()) + 5, int(z.max()) + 5
         self.keys = ((x + 2) * self.across + y + 2) * self.high + z + 2
 
@@ -166,10 +167,9 @@ class _Keys:
         """Cells from `lowest` to two above or below the keys: one after the other from where the lowest would be."""
         place = np.searchsorted(self.keys, keys + lowest)
         for ahead in range(3 - lowest):
-            cell = np.flatnonzero(place + ahead < len(self.keys))
-            other = place[cell] + ahead
-            found = self.keys[other] <= keys[cell] + 2
-            yield cell[found], other[found]
+            last = np.searchsorted(place, len(self.keys) - ahead)
+            found = np.flatnonzero(self.keys.take(place[:last] + ahead) <= keys[:last] + 2)
+            yield found, place.take(found) + ahead
 
 
 def _bridged(column: Indices) -> Indices:

@@ -19,6 +19,7 @@ Progress: TypeAlias = Callable[[float], None]
 
 THREADS = min(4, cpu_count())
 CHUNK = 8192  # rows: a chunk's arrays stay in the cache
+MANY = 131_072  # rows, for which it is worth to start threads for light work
 
 
 def silent(done: float) -> None:
@@ -67,7 +68,7 @@ def measured(cloud: Array) -> tuple[Array, Array, Array]:
         xyz[:, rows] = cloud[rows].T
         ends.append((xyz[:, rows].min(axis=1), xyz[:, rows].max(axis=1)))
 
-    in_chunks(work, len(cloud), size=32_768)
+    in_chunks(work, len(cloud), size=MANY)
     return xyz, np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
 
 

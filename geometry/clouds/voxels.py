@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..arrays import Array
 from ..errors import GeometryError, as_array, as_finite_array, as_number
-from .points import CHUNK, Indices, as_cloud, columns, in_chunks, measured
+from .points import MANY, Indices, as_cloud, columns, in_chunks, measured
 
 _DENSE = 16
 """Cells of the whole grid, per point, up to which a table of all cells is quicker than sorting."""
@@ -87,7 +87,7 @@ def _means(labels: Indices, counts: Indices, filled: Indices | slice, rows: Arra
             sums = np.bincount(labels, weights=rows[column], minlength=len(counts))
             means[:, column] = sums[filled] / number
 
-    in_chunks(work, len(rows), size=1 if len(labels) > CHUNK else len(rows))
+    in_chunks(work, len(rows), size=1 if len(labels) > MANY else len(rows))
     return means
 
 
@@ -114,17 +114,22 @@ def cell_keys(xyz: Array, start: Array, size: float, low: Array, high: Array) ->
 
     def work(rows: slice) -> None:
         xyz[:, rows] -= start[:, None]
-        number = np.floor(xyz[0, rows] / size)  # whole numbers below 2^53: float64 holds them, and is quicker
-        number -= first[0]
-        for axis in (1, 2):
-            number *= lengths[axis]
-            index = np.floor(xyz[axis, rows] / size)
-            index -= first[axis]
-            number += index
+        number, *others = _cells(xyz[:, rows], size, first)
+        for length, other in zip(lengths[1:], others, strict=True):
+            number *= length
+            number += other
         keys[rows] = number
 
     in_chunks(work, len(keys), size=32_768)
     return keys, cells
+
+
+def _cells(xyz: Array, size: float, first: Array) -> Array:
+    """Cells' numbers along the axes: whole numbers below 2^53, which float64 holds and is quicker with."""
+    cells = xyz / size
+    np.floor(cells, out=cells)
+    cells -= first[:, None]
+    return cells
 
 
 def _long_keys(xyz: Array, size: float) -> tuple[Indices, int]:
