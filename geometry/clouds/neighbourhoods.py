@@ -9,9 +9,11 @@ from .neighbours import Neighbours
 from .points import Indices, squares
 
 _PAIRS = (0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)
+_FEWEST = 24  # members of a group, twice as many at most
 _PART = 128  # groups at a time: their distances stay in the cache
 _ROUNDED = 4e-6
 """What float32 may say wrong about a squared distance, as part of the candidates' squared radius: 64 roundings."""
+_TINY = 1 / 256  # squared: neighbours closer together lose digits beside such a radius
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # groups in one place have no radius: NaN is never sure
@@ -20,12 +22,12 @@ def covariances(near: Neighbours, rows: slice, count: int) -> Array:
 
     Rows are put together in groups, and the tree is asked for the points nearest to a group's centre c: all within
     a radius r of it. A member p whose neighbours are within r − ‖p − c‖ finds them all among these, and products of
-    matrices compare and average them: quicker than to ask the tree for each point. Who can't be sure, of that or of
-    the last neighbour being nearer than the next by more than rounding, asks alone.
+    matrices compare and average them: quicker than to ask the tree for each point. Who can't be sure of that, or
+    that the last neighbour is nearer than the next by more than rounding, asks alone.
     """
     xyz = near.xyz[:, rows]
     result, sure = np.empty((6, xyz.shape[1])), np.zeros(xyz.shape[1], bool)
-    groups = _groups(xyz, count + count // 2)
+    groups = _groups(xyz)
     candidates = _candidates(groups.shape[1], count)
     if candidates < len(near):
         for first in range(0, len(groups), _PART):
@@ -42,12 +44,12 @@ def _candidates(members: int, count: int) -> int:
     return int((1.25 * math.sqrt(members) + math.sqrt(count)) ** 2)
 
 
-def _groups(xyz: Array, least: int) -> Indices:
+def _groups(xyz: Array) -> Indices:
     """Cut points, columns (3, n), into halves across the longer side, again and again, to equal groups (g, m).
 
     A few may be left over.
     """
-    halvings = max(0, (xyz.shape[1] // least).bit_length() - 1)
+    halvings = max(0, (xyz.shape[1] // _FEWEST).bit_length() - 1)
     groups = np.arange(xyz.shape[1] >> halvings << halvings)[None]
     for _ in range(halvings):
         members = xyz.take(groups, axis=1)
@@ -82,7 +84,8 @@ def _together(near: Neighbours, members: Array, count: int, candidates: int) -> 
     smallest = np.partition(compared, count, axis=2)
     last, beyond = smallest[..., :count].max(axis=2), smallest[..., count]
     square = squares(p)
-    sure = (beyond - last > _ROUNDED) & (last + square + _ROUNDED < np.maximum(1.0 - np.sqrt(square), 0.0) ** 2)
+    reach, most = last + square, np.maximum(1.0 - np.sqrt(square), 0.0) ** 2
+    sure = (beyond - last > _ROUNDED) & (reach + _ROUNDED < most) & (reach > _TINY)
     chosen = (compared <= last[..., None]).astype(np.float64)
     means = (q.transpose(1, 0, 2) @ chosen.transpose(0, 2, 1)).transpose(1, 0, 2) / count
     means[3:6] -= means[:3] * means[0]
