@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from geometry import Array, GeometryError
-from geometry.clouds import voxels
+from geometry.clouds import bounds, voxels
+from geometry.clouds.points import MANY
 from tests.geometry.cloud_shapes import DEGENERATE, blob, clouds, wavy
 
 sizes = st.floats(-2.5, 1.0).map(lambda power: 10.0**power)
@@ -56,6 +57,19 @@ def test_attributes_are_averaged_like_the_points(points: Array, size: float) -> 
     found = voxels(points, size)
     np.testing.assert_allclose(found.mean(points), found.points, rtol=0, atol=1e-11)
     np.testing.assert_allclose(found.mean(points[:, 2]), found.points[:, 2], rtol=0, atol=1e-11)
+
+
+def test_chunks_and_threads_change_nothing() -> None:
+    points = wavy(2, MANY + 10_000)
+    found = voxels(points, 0.1)
+    np.testing.assert_array_equal(bounds(points), [points.min(axis=0), points.max(axis=0)])
+    cells = np.floor((points - found.origin) / 0.1)
+    _, labels, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    np.testing.assert_array_equal(found.labels, labels)
+    np.testing.assert_array_equal(found.counts, counts)
+    sums = np.zeros_like(found.points)
+    np.add.at(sums, labels, points)
+    np.testing.assert_allclose(found.points, sums / counts[:, None], rtol=0, atol=1e-12)
 
 
 def test_a_given_origin_makes_the_same_cells_for_other_points() -> None:
