@@ -62,7 +62,7 @@ class _Grid:
     def __init__(self, cloud: Array, distance: float) -> None:
         xyz, low, high = measured(cloud)
         edge = distance / math.sqrt(3.0) * (1.0 - 1e-9)
-        if float((high - low).max()) / edge > 2.0**50:
+        if float((high - low).max()) > 2.0**50 * edge:
             raise GeometryError("distance", distance, "larger, for points so far apart")
         cells = np.floor((xyz - low[:, None]) / edge).astype(np.int64)
         self.order = np.lexsort(cells[::-1])

@@ -61,7 +61,7 @@ def voxels(points: npt.ArrayLike, size: float, *, origin: npt.ArrayLike | None =
     if not np.isfinite([low, high]).all():
         as_cloud("points", cloud)
     start = low - 0.5 * size if origin is None else as_finite_array("origin", origin, 3)
-    if np.abs([low - start, high - start]).max() / size > _MOST:
+    if np.abs([low - start, high - start]).max() > _MOST * size:
         raise GeometryError("size", size, "larger, for points so far from the grid's origin")
     keys, cells = cell_keys(xyz, start, size, low, high)
     if cells <= _DENSE * len(keys) + 4096:
