@@ -15,10 +15,14 @@ from app.settings import Settings, load
 from app.web import create_app
 from sims.kit.viser_internals import ViserHost
 
+SWITCH = 0.001
+"""Seconds that a thread which works beside the event loop may keep Python's lock when the loop asks for it."""
+
 
 def main() -> None:
     """Run until interrupted. One event loop serves viser, the pages and all websockets."""
     settings = load()
+    sys.setswitchinterval(SWITCH)
     logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     if sys.platform != "win32":
         import uvloop

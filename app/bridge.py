@@ -82,11 +82,15 @@ class Select(msgspec.Struct, tag="select", tag_field="type", forbid_unknown_fiel
     name: Annotated[str, msgspec.Meta(max_length=100)]
 
 
+class Cancel(msgspec.Struct, tag="cancel", tag_field="type", forbid_unknown_fields=True):
+    """Gives up what is being worked on."""
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state."""
 
 
-channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Get)
+channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get)
 
 
 @dataclass
@@ -233,7 +237,8 @@ class Bridge:
             # A page whose first message is late may still bring its state.
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-            look = Look(hello.dark, hello.width < NARROW, hello.controls, visit.watching, hello.width <= PHONE)
+            width = hello.width
+            look = Look(hello.dark, width < NARROW, hello.controls, visit.watching, width <= PHONE, width)
             link.viewer = visit.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)
         except Full:
@@ -348,6 +353,8 @@ class Bridge:
                 session.point(message.name, answer)
             elif isinstance(message, Select):
                 session.select(message.name)
+            elif isinstance(message, Cancel):
+                session.cancel()
             elif isinstance(message, Set):
                 session.change(message.params, live=False)
         except ValidationError as error:

@@ -23,9 +23,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.motion import play
+from app.workers import workers
 from geometry import GeometryError
 from sims.kit.params import Params, clipped
-from sims.kit.progress import Superseded, stale
+from sims.kit.progress import Superseded, Work, at_work
 from sims.kit.sim import Sim, Step
 from sims.kit.viewer import Viewer
 
@@ -37,8 +38,13 @@ LOADING = 10.0
 """Seconds that a page may take from its address to its websockets; its session is kept so long at least."""
 PATIENCE = 0.2
 """Seconds that a solve in the pool goes on for while a newer state waits."""
+LONG, REPORTED_EVERY = 0.4, 0.2
+"""Seconds without a drawing from which on pages are told how far the work is, and between two such messages."""
 UNVISITED = 60.0
 """Seconds that a session without viewers is kept."""
+
+
+WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 
 
 class Session:
@@ -55,6 +61,9 @@ class Session:
         self.left_at = time.monotonic()
         self.version = 0
         self._pool = pool
+        self._work: Work | None = None
+        """What the pool does for this session."""
+        self._drawn_at = 0.0
         self._drawing: asyncio.Task[None] | None = None
         self._dirty = False
         self._motion: asyncio.Task[None] | None = None
@@ -161,7 +170,23 @@ class Session:
     async def _play(self, steps: Iterator[Step]) -> None:
         async for changes in play(steps, lambda: self.params, reduced=self.reduced_motion):
             self._set(self.params.moved(changes))
+            if self.sim.heavy and self._drawing is not None:  # what takes long is seen before the motion goes on
+                await asyncio.wait([self._drawing])
         self._motion = None
+
+    def cancel(self) -> None:
+        """Give up the work that the pool does: back to the state that is drawn."""
+        if self._work is not None:
+            self.stop_motion()
+            self._work.cancelled = True
+            self._set(self._before)
+            self.redraw()
+
+    @property
+    def _before(self) -> Params:
+        """The state to which a cancelled one gives way: the one that is drawn, or, at first, that of the sim."""
+        first: Params = self.sim.params()
+        return first if self.solution is None else self._solved
 
     def _set(self, params: Params) -> None:
         if params == self.params:
@@ -177,6 +202,8 @@ class Session:
             self._drawing = asyncio.get_running_loop().create_task(self._draw())
 
     async def _draw(self) -> None:
+        self._drawn_at = time.monotonic()
+        reporting = asyncio.create_task(self._report()) if self.sim.heavy else None
         try:
             while self._dirty:
                 self._dirty = False
@@ -192,11 +219,14 @@ class Session:
                         self.params = self._solved
                 for viewer in list(self.viewers) if self.solution is not None else ():
                     self._show(viewer)
+                self._drawn_at = time.monotonic()
                 self._tell_state_soon()
         except Exception:
             log.exception("drawing %s failed", self.sim.slug)
         finally:
             self._drawing = None
+            if reporting is not None:
+                reporting.cancel()
 
     def _show(self, viewer: Viewer) -> None:
         """Draw for one viewer; what goes wrong there is no matter of the others."""
@@ -208,13 +238,41 @@ class Session:
     async def _solve(self, params: Params) -> Any:
         if not self.sim.heavy:
             return self.sim.solve(params)
+        work = self._work = Work(self._wanted(time.monotonic() + PATIENCE), "Waiting until others' work is done")
         context = copy_context()
-        context.run(stale.set, self._out_of_date(time.monotonic() + PATIENCE))
-        return await asyncio.get_running_loop().run_in_executor(self._pool, context.run, self.sim.solve, params)
+        context.run(at_work.set, work)
+        try:
+            found = await asyncio.get_running_loop().run_in_executor(self._pool, context.run, self.sim.solve, params)
+        finally:
+            self._work = None
+        if work.cancelled:
+            raise Superseded
+        return found
 
-    def _out_of_date(self, until: float) -> Callable[[], bool]:
-        """Whether a newer state waits, for longer than anybody should."""
-        return lambda: self._dirty and time.monotonic() > until
+    def _wanted(self, until: float) -> Callable[[], bool]:
+        """Unless a newer state waits, for longer than anybody should."""
+        return lambda: not self._dirty or time.monotonic() < until
+
+    async def _report(self) -> None:
+        """Tell the pages how far the work is, once nothing was drawn for long, until something is."""
+        told = False
+        try:
+            while True:
+                await asyncio.sleep(REPORTED_EVERY)
+                long = self._work is not None and time.monotonic() - self._drawn_at > LONG
+                if long or told:
+                    self._tell(self._progress() if long else WORK_ENDED)
+                told = long
+        finally:
+            if told:
+                self._tell(WORK_ENDED)
+
+    def _progress(self) -> dict[str, Any]:
+        assert self._work is not None
+        return {
+            "type": "work", "text": self._work.words, "done": self._work.done,
+            "cancel": self.params != self._before,
+        }  # fmt: skip
 
     def state(self) -> dict[str, Any]:
         """The state message for pages."""
@@ -271,10 +329,13 @@ class Sessions:
     def __init__(self, limit: int) -> None:
         self._limit = limit
         self._by_room: dict[tuple[str, str], Session] = {}
-        self._pool = ThreadPoolExecutor(max_workers=2, thread_name_prefix="solve")
+        self._pool = workers("solve", 2)
         self.counts: Counter[str] = Counter()
-        self.aside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="aside")
+        self.aside = workers("aside", 1)
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
+        self._ahead = workers("ahead", 1)
+        self._begun: set[str] = set()
+        """Sims whose work ahead has begun."""
 
     def __len__(self) -> int:
         return len(self._by_room)
@@ -302,9 +363,18 @@ class Sessions:
             session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
             session.waiting = True
             self.counts["opened"] += 1
+            if sim.ahead and sim.slug not in self._begun and session._drawing is not None:
+                self._begun.add(sim.slug)
+                session._drawing.add_done_callback(lambda _: self._work_ahead(sim))
         if session.waiting and not watching:
             session.begin(params, params if opened is None else opened)
         return session
+
+    def _work_ahead(self, sim: Sim[Any, Any]) -> None:
+        """Begin with what people in that sim will need soon."""
+        with suppress(RuntimeError):  # the server ends already
+            for piece in sim.ahead:
+                self._ahead.submit(piece)
 
     def _drop_one(self) -> None:
         """Make room: forget the session that nobody has looked at for longest. Raises `Full` if all are in use."""
@@ -324,6 +394,7 @@ class Sessions:
     def close(self) -> None:
         """End the pools."""
         self.aside.shutdown(wait=False, cancel_futures=True)
+        self._ahead.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 

@@ -52,6 +52,7 @@ function connect() {
   socket.onmessage = (event) => receive(JSON.parse(event.data));
   socket.onclose = () => {
     socket = null;
+    showWork({ text: "" });
     setTimeout(connect, retryAfter);
     retryAfter = Math.min(retryAfter * 2, 1500); // within the time that the server waits before it draws
   };
@@ -76,6 +77,8 @@ function receive(message) {
   } else if (message.type === "error") {
     notify("⚠ " + message.message);
     post({ type: "sim3:error", message: message.message });
+  } else if (message.type === "work") {
+    showWork(message);
   }
 }
 
@@ -107,6 +110,22 @@ function notify(text) {
   notice.hidden = false;
   clearTimeout(hiding);
   hiding = setTimeout(() => (notice.hidden = true), 6000);
+}
+
+// What takes the server long: in words, how much of it is done, and a way back to what is shown.
+const work = element("div", { class: "s3-work", role: "group", "aria-label": "Work in progress", hidden: "" });
+const workWords = element("span", { role: "status" }, work);
+const workBar = element("progress", { max: "1", "aria-label": "Progress" }, work);
+const workCancel = element("button", { type: "button" }, work);
+workCancel.textContent = "Cancel";
+workCancel.addEventListener("click", () => send({ type: "cancel" }));
+
+function showWork({ text, done, cancel }) {
+  work.hidden = !text;
+  if (workWords.textContent !== text) workWords.textContent = text;
+  if (typeof done === "number") workBar.value = done;
+  else workBar.removeAttribute("value");
+  workCancel.hidden = !cancel || sim.watching;
 }
 
 function describeScene(text) {
@@ -382,6 +401,7 @@ document.addEventListener("click", (event) => {
   if (kind === "share") share();
   else if (kind === "picture") savePicture();
   else if (kind === "keys") showKeys();
+  else if (kind === "give-up") bringing.request.abort();
   else if (kind === "close") event.target.closest("dialog").close();
 });
 
@@ -417,13 +437,13 @@ function savePicture() {
 
 // --- Files that a learner brings: sent as they are, with how far they are; the state comes over the channel ----------
 
-const bringing = { words: "", share: null };
+const bringing = { words: "", share: null, request: null };
 
 function showBringing() {
   const bar = document.querySelector(".s3-bring progress");
   const words = document.querySelector("[data-s3-file-status]");
   if (!bar || (!bringing.words && bar.hidden)) return;
-  bar.hidden = bringing.share === null;
+  bar.hidden = bar.nextElementSibling.hidden = bringing.share === null;
   if (bringing.share === 1) bar.removeAttribute("value");
   else if (bringing.share !== null) bar.value = bringing.share;
   if (bringing.words && words.textContent !== bringing.words) words.textContent = bringing.words;
@@ -440,12 +460,13 @@ function bring(file) {
     say(`⚠ “${file.name}” has ${size}; at most ${sim.files.largest / 1e6} MB are taken. Nothing has changed.`);
     return;
   }
-  const request = new XMLHttpRequest();
+  const request = (bringing.request = new XMLHttpRequest());
   const failed = (words) => say(`⚠ “${file.name}”: ${words} Nothing has changed.`);
   request.open("POST", `file?name=${encodeURIComponent(file.name)}`);
   request.upload.onprogress = (event) => say(`Sending “${file.name}”, ${size}…`, event.loaded / event.total * 0.999);
   request.upload.onload = () => say(`Reading “${file.name}”, ${size}…`, 1);
   request.onerror = () => failed("The connection broke off.");
+  request.onabort = () => failed("It was given up.");
   request.onload = () => {
     if (request.status === 200) return say(`“${file.name}” is shown.`);
     let words = "The server didn't take it.";

@@ -1,23 +1,43 @@
-"""Long work that ends when nobody waits for it any more.
+"""Long work that says how far it is, and ends when nobody waits for it any more.
 
-A session that solves in the pool says, for the thread that does it, whether a newer state waits; what takes long
-asks now and then. Whoever solves otherwise (tests, the API) is never stopped.
+A session that solves in the pool gives the thread that does it a `Work`, in which it writes what it does; what takes
+long also asks now and then whether it is still wanted. Whoever solves otherwise (tests, the API) is never stopped.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextvars import ContextVar
+from dataclasses import dataclass
 
-stale: ContextVar[Callable[[], bool]] = ContextVar("stale", default=lambda: False)
-"""Whether a newer state waits."""
+
+@dataclass
+class Work:
+    """What a thread does for a session: in words, and how much of it is done, 0 to 1, or None where nobody knows."""
+
+    wanted: Callable[[], bool] = lambda: True
+    words: str = ""
+    done: float | None = None
+    cancelled: bool = False
+
+
+at_work: ContextVar[Work | None] = ContextVar("at_work", default=None)
 
 
 class Superseded(Exception):
     """The result is no longer wanted."""
 
 
-def goes_on(done: float = 0.0) -> None:
-    """Raise `Superseded` if the result is no longer wanted; `done`, 0 to 1, is how much of it there is."""
-    if stale.get()():
-        raise Superseded
+def begins(words: str) -> None:
+    """Say what is done from here on. Raise `Superseded` if it is no longer wanted."""
+    if (work := at_work.get()) is not None:
+        work.words = words
+    goes_on(None)
+
+
+def goes_on(done: float | None = None) -> None:
+    """Say how much of it is done, 0 to 1. Raise `Superseded` if the rest is no longer wanted."""
+    if (work := at_work.get()) is not None:
+        work.done = done
+        if work.cancelled or not work.wanted():
+            raise Superseded

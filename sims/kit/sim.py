@@ -136,6 +136,8 @@ class Sim(Generic[P, S]):
     """Files that can be had of a state, by name."""
     heavy: bool = False
     """Solving can take over 5 ms: it runs in the pool, beside the event loop."""
+    ahead: Sequence[Callable[[], object]] = ()
+    """Work that somebody will need soon: done one after the other when the sim was first opened on a server."""
 
 
 def jsonable(value: Any) -> Any:

@@ -24,6 +24,10 @@ Quaternion = tuple[float, float, float, float]
 Drag = Callable[["Dragged"], None]
 FIELD = 0.7
 """Vertical field of view in radians, as boot.js sets it."""
+SHEET = 0.55
+"""Share of a phone's height that viser's bottom sheet leaves free."""
+HEAD_RADIUS, HEAD_LENGTH = 2.6, 7.0
+"""Of an arrow, in radii of its shaft."""
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -175,6 +179,8 @@ class Label(Node):
 class Arrows(Node):
     """One arrow or several, whose ends move at once."""
 
+    _radius: float | None = None
+
     def between(self, tail: Vector, tip: Vector) -> None:
         """Place the only one."""
         self.draw(np.array([[tail, tip]], dtype=float))
@@ -182,6 +188,13 @@ class Arrows(Node):
     def draw(self, ends: npt.NDArray[np.float64]) -> None:
         """Tails and tips (n, 2, 3)."""
         set_property(self.handle, "points", ends.astype(np.float32))
+
+    def thickness(self, radius: float) -> None:
+        """Radius of their shafts in metres; their heads go with it."""
+        if radius != self._radius:
+            self._radius = radius
+            for name, times in (("shaft_radius", 1.0), ("head_radius", HEAD_RADIUS), ("head_length", HEAD_LENGTH)):
+                set_property(self.handle, name, times * radius)
 
 
 ARC_PIECES = 48
@@ -223,8 +236,12 @@ class Stage:
         self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Dragged], None],
         pick: Callable[[str], None] = lambda name: None,
         point: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
+        width: float = math.inf, phone: bool = False,
     ) -> None:  # fmt: skip
         self.client = client
+        self._width = width
+        """Pixels that panels leave to the scene, once they are there."""
+        self._phone = phone
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
@@ -257,11 +274,14 @@ class Stage:
     def look(self, position: Vector, look_at: Vector, radius: float) -> None:
         """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
         camera = self.client.camera
-        half = math.tan(0.5 * FIELD) * min(1.0, camera.aspect)
+        seen = SHEET if self._phone else 1.0  # of the height; boot.js does the same for the first view
+        aspect = min(camera.image_width, self._width) / (seen * camera.image_height)
+        half = math.tan(0.5 * FIELD) * min(1.0, aspect) * seen
         away = np.subtract(position, look_at)
         away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))
-        camera.position = np.add(look_at, away)
-        camera.look_at = np.asarray(look_at, dtype=float)
+        middle = np.subtract(look_at, (0.0, 0.0, 0.75 * radius if self._phone else 0.0))
+        camera.position = middle + away
+        camera.look_at = middle
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""
@@ -318,7 +338,7 @@ class Stage:
         handle = self.scene.add_arrows(
             name, points=np.asarray(ends, dtype=float),
             colors=np.array(colors[0] if isinstance(roles, str) else colors, np.uint8), shaft_radius=radius,
-            head_radius=2.6 * radius, head_length=7 * radius,
+            head_radius=HEAD_RADIUS * radius, head_length=HEAD_LENGTH * radius,
         )  # fmt: skip
         return Arrows(handle)
 

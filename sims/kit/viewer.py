@@ -21,6 +21,8 @@ from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import control_id, received, set_property, set_value
 
 ACCENT = (11, 95, 215)
+PICTURES = 330
+"""Pixels that the panel of the pictures is wide."""
 OTHER = "another"
 """What a list of presets shows for a value that isn't one of them."""
 
@@ -46,6 +48,8 @@ class Look:
     controls: bool = True
     watching: bool = False
     phone: bool = False
+    width: int = 1280
+    """Of the page, in pixels."""
 
 
 @dataclass
@@ -151,7 +155,10 @@ class Viewer:
             self._panes = self._add_panes()
         if look.controls:
             self._readouts = self._add_readouts()
-        self.scene = sim.scene(Stage(client, self.palette, self._dragged, self._picked, self._pointed))
+        width = look.width - self._docked()
+        self.scene = sim.scene(
+            Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
+        )
         self._light: Callable[[str], None] | None = getattr(self.scene, "point", None)
         self._lit = ""
         self._live = False
@@ -204,10 +211,21 @@ class Viewer:
             tuple((worded(params, name), params.bounds(name), tuple(s)) for name, s in params.regions().items())
         )
 
+    @property
+    def _panel(self) -> int:
+        return 300 if self.look.narrow else 340
+
+    def _docked(self) -> int:
+        """Pixels that panels take of the width."""
+        if self.look.phone:
+            return 0
+        pictures = PICTURES if self.sim.panes is not None and not self.look.narrow else 0
+        return pictures + (self._panel if self.look.controls else 0)
+
     def _dock(self) -> None:
         panel = self.client.gui.main_panel
         panel.dock_right()
-        panel.set_width(300 if self.look.narrow else 340)
+        panel.set_width(self._panel)
 
     def _add_panes(self) -> viser.GuiHtmlHandle | None:
         if self.sim.panes is None:
@@ -222,7 +240,7 @@ class Viewer:
             panel.dock_above(self.client.gui.main_panel)
         else:
             panel.dock_left()
-            panel.set_width(330)
+            panel.set_width(PICTURES)
         return html
 
     def _add_controls(self, params: Params) -> None:
@@ -373,6 +391,7 @@ def bring(endings: Sequence[str], *, disabled: bool) -> str:
         '<div class="s3-bring"><label>Bring a file<input type="file" aria-label="Bring a file" data-s3-file'
         f' accept="{",".join(endings)}"{off}>'
         '</label><progress max="1" hidden aria-label="Upload"></progress>'
+        '<button type="button" hidden data-s3="give-up">Cancel</button>'
         f'<p data-s3-file-status role="status">{", ".join(e[1:].upper() for e in endings)}; it stays on this server'
         " while the sim is open.</p></div>"
     )

@@ -5,8 +5,12 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 import logging
+import os
+import sys
+import threading
 import time
 from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,8 +20,9 @@ from pydantic import ValidationError
 
 from app import motion, session
 from app.session import Full, Session, Sessions, new_key, refusal, room_of
+from app.workers import workers
 from sims.kit.params import Params
-from sims.kit.progress import Superseded, goes_on
+from sims.kit.progress import Superseded, begins, goes_on
 from sims.kit.sim import Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
 
@@ -641,3 +646,157 @@ def test_of_a_flood_of_places_only_the_last_is_looked_for() -> None:
         assert room.eye.seen[-1] == (4.0, 8.0)
 
     run(test)
+
+
+class Slow:
+    """Solves at once, but for a size of 5: of that half is done, and the rest never ends."""
+
+    def __init__(self, room: Room) -> None:
+        self.ended: list[float] = []
+        self.deaf = False
+        """It doesn't ask whether it is still wanted."""
+        self.let_go = threading.Event()
+        room.session.sim = dataclasses.replace(room.session.sim, solve=self)
+
+    def __call__(self, params: ToyParams) -> Any:
+        if params.size == 5.0:
+            begins("Counting")
+            self._work()
+            self.ended.append(params.size)
+        return SimpleNamespace(double=2.0 * params.size)
+
+    def _work(self) -> None:
+        while not self.let_go.wait(0.001):
+            if not self.deaf:
+                goes_on(0.5)
+
+
+async def told(room: Room, kind: str) -> dict[str, Any]:
+    """The next message of a kind."""
+    room.told.clear()
+    while not (found := [message for message in room.told if message["type"] == kind]):
+        await asyncio.sleep(0.005)
+    return found[0]
+
+
+def test_pages_are_told_how_far_long_work_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "LONG", 0.02)
+    monkeypatch.setattr(session, "REPORTED_EVERY", 0.01)
+
+    async def test() -> None:
+        room = Room(heavy=True)
+        await room.drawn()
+        slow = Slow(room)
+        room.session.change({"size": 5.0})
+        assert await told(room, "work") == {"type": "work", "text": "Counting", "done": 0.5, "cancel": True}
+        slow.let_go.set()
+        await room.drawn()
+        await asyncio.sleep(0)
+        assert [m["text"] for m in room.told if m["type"] == "work"][-1] == ""
+        assert room.eye.seen[-1] == (5.0, 10.0)
+
+    run(test)
+
+
+def test_quick_work_is_not_worth_a_word() -> None:
+    async def test() -> None:
+        room = Room(0.02, heavy=True)
+        for size in range(20):
+            room.session.change({"size": float(size)})
+            await room.drawn()
+        assert not [message for message in room.told if message["type"] == "work"]
+
+    run(test)
+
+
+@pytest.mark.parametrize("deaf", [False, True])
+def test_long_work_can_be_cancelled(monkeypatch: pytest.MonkeyPatch, deaf: bool) -> None:
+    monkeypatch.setattr(session, "LONG", 0.02)
+    monkeypatch.setattr(session, "REPORTED_EVERY", 0.01)
+
+    async def test() -> None:
+        room = Room(heavy=True, start=ToyParams(size=3))
+        await room.drawn()
+        slow = Slow(room)
+        slow.deaf = deaf
+        room.session.change({"size": 5.0})
+        assert (await told(room, "work"))["cancel"]
+        room.session.cancel()
+        assert room.session.params == ToyParams(size=3)
+        if deaf:
+            slow.let_go.set()
+        await room.drawn()
+        assert room.eye.seen[-1] == (3.0, 6.0)
+        assert (5.0, 10.0) not in room.eye.seen
+        assert slow.ended == ([5.0] if deaf else [])
+        room.session.cancel()
+        await room.drawn()
+        assert room.session.params == ToyParams(size=3), "there was nothing to cancel"
+
+    run(test)
+
+
+def test_a_sim_that_opens_with_long_work_opens_without_it_when_cancelled() -> None:
+    async def test() -> None:
+        room = Room(heavy=True, start=ToyParams(size=5))
+        Slow(room)
+        while room.session._work is None:
+            await asyncio.sleep(0.001)
+        room.session.cancel()
+        await room.drawn()
+        assert room.eye.seen == [(1.0, 2.0)]
+
+    run(test)
+
+
+def test_a_motion_of_a_heavy_sim_waits_until_each_state_is_drawn() -> None:
+    async def test() -> None:
+        room = Room(0.15, heavy=True)
+        await room.drawn()
+        room.session.act("grow")
+        await room.moved()
+        await room.drawn()
+        sizes = [size for size, _ in room.eye.seen]
+        assert sizes[1] == 0.0, "the first state of the motion was skipped"
+        assert sizes[-1] == 100.0
+        assert room.solver.solved == sizes
+
+    run(test)
+
+
+def test_work_ahead_is_done_once_after_the_first_drawing() -> None:
+    async def test() -> None:
+        sim, solver = toy(heavy=True)
+        done: list[int] = []
+        pieces = [lambda k=k: done.append(k + len(solver.solved)) for k in (0, 10)]
+        sim = dataclasses.replace(sim, ahead=pieces)
+        sessions = Sessions(10)
+        for name in ("one", "two"):
+            sessions.open(sim, name, ToyParams())
+        while len(done) < 2:
+            await asyncio.sleep(0.001)
+        await asyncio.sleep(0.02)
+        sessions.open(sim, "three", ToyParams())
+        await asyncio.sleep(0.02)
+        assert len(done) == 2
+        assert done[0] > 0
+        assert done[1] > 10
+        sessions.close()
+
+    run(test)
+
+
+def test_what_works_beside_the_loop_gives_way_to_it() -> None:
+    """On Linux, where each thread has a niceness of its own; threads that it begins have the same."""
+
+    def niceness() -> int:
+        return os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
+
+    def inside() -> tuple[int, int]:
+        with ThreadPoolExecutor(1) as further:
+            return niceness(), further.submit(niceness).result()
+
+    own = niceness()
+    with workers("test", 1) as pool:
+        assert pool.submit(inside).result() == ((min(own + 10, 19),) * 2 if sys.platform == "linux" else (own, own))
+    assert niceness() == own
