@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
+from typing import Any
 
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import JSONResponse, Response
@@ -19,7 +20,10 @@ AT_ONCE = 4
 """Largest files that may be on their way at once."""
 KEPT = 10
 """Largest files that all sessions together may keep."""
-ANYWHERE = {"access-control-allow-origin": "*", "access-control-allow-methods": "POST"}
+ANYWHERE = {
+    "access-control-allow-origin": "*", "access-control-allow-methods": "POST",
+    "access-control-allow-headers": "content-type",
+}  # fmt: skip
 """A sandboxed frame has no origin; the key in the address is the secret."""
 STALL = 10.0
 """Seconds without a byte after which a file is given up."""
@@ -55,7 +59,9 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
         if sessions.kept_bytes() + length > KEPT * largest:
             raise Refusal(503, BUSY)
         async with coming.received(request, length) as data:
-            await _read(sessions, session, name[:200], data, largest)
+            kept, changes = await _read(sessions, session, name[:200], data, largest)
+            if not await request.is_disconnected():  # else it was given up meanwhile
+                session.keep(kept, len(data), changes)
         return JSONResponse({"name": name}, headers=ANYWHERE)
 
     @app.get("/sims/{slug}/s/{room}/{key}/result/{name}", include_in_schema=False)
@@ -111,13 +117,14 @@ def _length(request: Request, largest: int) -> int:
     return length
 
 
-async def _read(sessions: Sessions, session: Session, name: str, data: bytes, largest: int) -> None:
+async def _read(
+    sessions: Sessions, session: Session, name: str, data: bytes, largest: int
+) -> tuple[object, Mapping[str, Any]]:
     files = session.sim.files
     if files is None:
         raise Refusal(404, "This sim takes no files.")
     loop = asyncio.get_running_loop()
     try:
-        kept, changes = await loop.run_in_executor(sessions.aside, files.read, name, data, largest)
+        return await loop.run_in_executor(sessions.aside, files.read, name, data, largest)
     except ValueError as error:
         raise Refusal(422, str(error)) from None
-    session.keep(kept, len(data), changes)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import Any
 
 import httpx
@@ -106,6 +108,28 @@ def test_a_bad_file_is_refused_in_words_and_changes_nothing(local: Local, name: 
     assert answer.json()["detail"][0].isupper()
     assert desk.params == before
     assert desk.session.kept is None
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "count"),
+    [
+        ("one.xyz", b"1 2 3\n", 1),
+        ("same.xyz", b"1 2 3\n" * 50, 50),
+        ("line.xyz", b"".join(b"%d 0 0\n" % k for k in range(50)), 50),
+        ("../../../etc/passwd.ply", FILE, 4),
+        ("..\\..\\windows\\a.ply", FILE, 4),
+        ("<script>alert(1)</script>.ply", FILE, 4),
+    ],
+)
+def test_an_odd_file_is_shown_whatever_is_done_with_it(local: Local, name: str, data: bytes, count: int) -> None:
+    desk = Desk(local, "show_normals=1&color=variation")
+    assert desk.bring(name, data).status_code == 200
+    assert desk.solution().points_out == count
+    assert isinstance(desk.session.kept, Cloud)
+    assert not set(desk.session.kept.name) & set("/\\")
+    for process in ("ground", "clusters", "outliers", "register", "surface"):
+        solution = desk.session.sim.solve(desk.params.changed({"process": process, "selected": 0}))
+        assert solution.points_in == count
 
 
 def test_points_without_coordinates_are_counted(local: Local) -> None:
@@ -217,3 +241,28 @@ def test_reading_doesnt_hold_up_the_loop(local: Local) -> None:
     assert brought.status_code == 200
     assert health
     assert all(answer.status_code == 200 for answer in health)
+
+
+def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) -> None:
+    desk = Desk(local)
+    begun, go_on = threading.Event(), threading.Event()
+    known = desk.session.sim.files
+    assert known is not None
+    make = known.read
+
+    def read_slowly(name: str, data: bytes, largest: int) -> tuple[object, Any]:
+        begun.set()
+        assert go_on.wait(20)
+        return make(name, data, largest)
+
+    desk.session.sim = replace(desk.session.sim, files=replace(known, read=read_slowly))
+    with socket.create_connection(("127.0.0.1", httpx.URL(local.url).port)) as page:
+        head = f"POST {desk.path}file?name=mine.ply HTTP/1.1\r\nhost: x\r\ncontent-length: {len(FILE)}\r\n\r\n"
+        page.sendall(head.encode() + FILE)
+        assert begun.wait(20)
+    assert local.http.get("/healthz").status_code == 200  # the loop has heard by now that the page is gone
+    go_on.set()
+    local.app.state.sessions.aside.submit(lambda: None).result()
+    assert local.http.get("/healthz").status_code == 200
+    assert desk.params.dataset == "room"
+    assert desk.session.kept is None

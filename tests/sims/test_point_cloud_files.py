@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 import struct
 import tracemalloc
 from collections.abc import Callable
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 from pypcd4.pypcd4 import Encoding, PointCloud
 
 from sims.point_cloud.cloud import Cloud
-from sims.point_cloud.files import FORMATS, CloudFileError, ply_bytes, read
+from sims.point_cloud.files import FORMATS, CloudFileError, ply_bytes, read, text
 
 LARGEST = 1_000_000
 POINTS = np.round(np.random.default_rng(0).uniform(-5.0, 5.0, (60, 3)), 3)
@@ -203,7 +204,7 @@ def test_points_without_coordinates_are_dropped_and_counted() -> None:
         ("a.ply", ply_bytes(Cloud("", np.full((5, 3), np.nan))), "finite"),
         ("a.xyz", b"nan nan nan\nnan nan nan\n", "finite"),
         ("a.xyz", b"1 2\n3 4\n", "three"),
-        ("a.xyz", b"1 2 3\n4 5\n", "numbers like the others"),
+        ("a.xyz", b"1 2 3\n4 5\n", "Line 2 isn't 3 numbers like the others: “4 5”"),
         ("a.csv", b"a,b,c\n1,2,3\n", "no coordinate x, y, z"),
         ("a.xyz", b"\x00\x01\x02\x03", "text"),
         ("a.ply", b"plx\n", "PLY"),
@@ -245,3 +246,29 @@ def test_what_is_written_is_read_again() -> None:
     again = read("a.ply", ply_bytes(CLOUD), LARGEST)
     np.testing.assert_array_equal(again.points, POINTS)
     np.testing.assert_array_equal(again.colors, COLORS)
+
+
+def test_a_long_table_is_read_in_pieces() -> None:
+    """NumPy keeps Python's lock while it reads: were it all at once, everybody else's sim would wait."""
+    count = 3 * text._PIECE // 8
+    lines = b"".join(b"%d 2 %d\n" % (k, k % 7) for k in range(count))
+    cloud = read("a.xyz", b"# of mine\n" + lines, len(lines) + 100)
+    np.testing.assert_array_equal(cloud.points[:, 0], np.arange(count))
+    head = (
+        f"ply\nformat ascii 1.0\nelement vertex {count}\nproperty int x\nproperty int y\nproperty int z\nend_header\n"
+    )
+    assert len(read("a.ply", head.encode() + lines + b"3 0 1 2\n" * 9, 2 * len(lines))) == count
+    for broken, word in ((b"4 5\n", "“4 5”"), (b"1 2 3 4\n", "“1 2 3 4”"), (b"1 two 3\n", "“1 two 3”")):
+        with pytest.raises(CloudFileError, match=f"^Line {count + 1:,} isn't 3 numbers like the others: {word}"):
+            read("a.xyz", lines + broken, 2 * len(lines))
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_no_librarys_words_are_said_to_learners(kind: str) -> None:
+    name, make, _, _ = FILES[kind]
+    with contextlib.suppress(CloudFileError):
+        read(name, make()[:-100], LARGEST)
+        return
+    with pytest.raises(CloudFileError) as said:
+        read(name, make()[:-100], LARGEST)
+    assert re.search(r"usecols|dtype|IoError|buffer|column|\brow\b", str(said.value)) is None

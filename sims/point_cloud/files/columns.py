@@ -36,13 +36,13 @@ def named(columns: Mapping[str, npt.NDArray[Any]]) -> Columns:
     return known
 
 
-def enough(claimed: int, size: int, there: int) -> None:
+def enough(claimed: int, size: int, there: int, what: str = "points of {} bytes") -> None:
     """Raise CloudFileError if a header claims more data than the file has, or no points."""
     if claimed <= 0:
         raise CloudFileError("Its header says that it has no points.")
     if claimed * size > there:
         raise CloudFileError(
-            f"It is cut off: its header says {claimed:,} points of {size} bytes, and {max(there, 0):,} bytes follow."
+            f"It is cut off: its header says {claimed:,} {what.format(size)}, and {max(there, 0):,} bytes follow."
         )
 
 

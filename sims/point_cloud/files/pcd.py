@@ -52,7 +52,7 @@ def _check_compressed(data: bytes, start: int, whole: int, largest: int) -> None
     if len(data) < start + 8:
         raise CloudFileError("It is cut off behind its header.")
     packed, unpacked = struct.unpack_from("<II", data, start)
-    enough(packed, 1, len(data) - start - 8)
+    enough(packed, 1, len(data) - start - 8, "bytes of points")
     if unpacked != whole:
         raise CloudFileError(f"Its points need {whole:,} bytes, and it holds {unpacked:,}.")
     if unpacked > largest:
@@ -63,7 +63,7 @@ def _decoded(data: bytes) -> PointCloud:
     try:
         return PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(data)))
     except (ValueError, RuntimeError, KeyError, struct.error) as error:
-        raise CloudFileError(f"It can't be read: {str(error)[:100]}") from None
+        raise CloudFileError("It is damaged or cut off: its points aren't as its header says.") from error
 
 
 def _columns(table: npt.NDArray[np.void]) -> dict[str, npt.NDArray[np.generic]]:

@@ -5,7 +5,6 @@ Source: Turk 1994, "The PLY polygon file format". No library checks the header's
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -112,7 +111,7 @@ def _from_text(data: bytes, start: int, skip: int, points: _Element) -> Columns:
     width = len(points.properties)
     enough(points.count, 2 * width, len(data) - start)
     points.dtype("=")
-    table = numbers(io.BytesIO(data[start:]), skip, points.count)
+    table = numbers(data[start:], skip, points.count, 1 + data.count(b"\n", 0, start))
     if len(table) < points.count:
         raise CloudFileError(f"It is cut off: its header says {points.count:,} points, and {len(table):,} are there.")
     if table.shape[1] < width:
