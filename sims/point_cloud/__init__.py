@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from sims.kit.sim import Action, Files, Objective, Sim
 from sims.point_cloud import library, model
+from sims.point_cloud.datasets import DATASETS, dataset
 from sims.point_cloud.files import FORMATS
 from sims.point_cloud.model import OWN, VIEWS, CloudParams, CloudSolution
 from sims.point_cloud.pictures import panes
@@ -45,6 +48,7 @@ SIM = Sim(
         "voxels": {"voxel_size": 0.1, "color": "height", "point_size": 4.0},
         "one voxel a metre": {"voxel_size": 1.0, "show_normals": True, "color": "normals", "point_size": 8.0},
         "normals": {"voxel_size": 0.05, "show_normals": True, "color": "normals"},
+        "variation": {"dataset": "statue", "color": "variation", "selected": 20_000},
         "selected": {"selected": 50_000, "show_box": False},
         "no such point": {"selected": 5_000_000},
         "ground marked": {"process": "ground", "step": 1},
@@ -53,7 +57,7 @@ SIM = Sim(
         "scans apart": {"dataset": "two-scans", "process": "register", "step": 0},
         "scans together": {"dataset": "two-scans", "process": "register", "step": 40},
         "points to points": {"dataset": "two-scans", "process": "register", "step": 7, "method": "point"},
-        "point of the moving scan": {"dataset": "two-scans", "process": "register", "step": 2, "selected": 90_000},
+        "point of the moving scan": {"dataset": "two-scans", "process": "register", "step": 2, "selected": 150_000},
         "statue's surface": {"dataset": "statue", "process": "surface", "step": 2},
         "no surface": {"dataset": "statue", "process": "surface", "distance": 0.01, "voxel_size": 0.1},
         "file that is gone": {"dataset": "file", "file": "upload-gone", "process": "surface"},
@@ -62,4 +66,5 @@ SIM = Sim(
     files=Files(OWN, tuple(FORMATS), library.bring, library.offer),
     downloads={"point-cloud.ply": ply},
     heavy=True,
+    ahead=[partial(dataset, name) for name in DATASETS],
 )  # fmt: skip

@@ -14,6 +14,7 @@ from sims.point_cloud.cloud import Colors
 RAMPS = {
     "height": ("#3b2a86", "#31629e", "#21918c", "#4fb562", "#c9c61f"),
     "intensity": ("#2d1a52", "#7a2080", "#c43c6b", "#ee7a45", "#f0c34e"),
+    "variation": ("#1f3b73", "#4a5a80", "#7c7a76", "#aa9d5c", "#dcc23e"),
 }
 """From low to high, darker to lighter, so that they are told apart without hue and on both pages."""
 CLUSTERS = (
@@ -47,10 +48,13 @@ def _sent_ramp(kind: str) -> Colors:
 
 
 def of_values(values: Array, span: tuple[float, float], kind: str) -> Colors:
-    """Colours to send (N, 3) for numbers (N,); beyond the span they stay at its ends."""
+    """Colours to send (N, 3) for numbers (N,); beyond the span they stay at its ends, and what is NaN is grey."""
     low, high = span
     place = np.clip((values - low) * ((_STEPS - 1) / (high - low)), 0.0, _STEPS - 1.0)
-    return np.asarray(_sent_ramp(kind)[np.rint(place).astype(np.intp)])
+    unknown = np.isnan(place)
+    sent = _sent_ramp(kind)[np.rint(np.where(unknown, 0.0, place)).astype(np.intp)]
+    sent[unknown] = of_rgb(np.array([GREY], np.uint8))[0]
+    return np.asarray(sent)
 
 
 def of_directions(normals: Array) -> Colors:

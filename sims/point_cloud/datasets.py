@@ -1,19 +1,21 @@
 """The simulated clouds: sensors that cast rays at scenery, with the noise and the shadows of real ones.
 
-Nothing here was scanned. Each is made at its first use from a seed of its own, rounded to 0.1 mm.
+Nothing here was scanned. Each is made once in a process, from a seed of its own, and rounded to 0.1 mm.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import cache
+from threading import Lock
 
 import numpy as np
 
 from geometry import rotations, se3
 from geometry.arrays import Array
 from geometry.ray_casting import cast
+from sims.kit.progress import begins
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.scenery import Place, Thing, court, room, statue, street
 
@@ -22,9 +24,14 @@ RINGS, TURN = 64, 1800
 """Lasers of the rotating lidar, and how often each measures in a turn."""
 
 
-@lru_cache(maxsize=8)
 def dataset(name: str) -> Cloud:
-    """Return one of `DATASETS`. Raises KeyError for another name."""
+    """Return one of `DATASETS`; who asks while it is being made waits for it. Raises KeyError for another name."""
+    with _making[name]:
+        return _made(name)
+
+
+@cache
+def _made(name: str) -> Cloud:
     return DATASETS[name]()
 
 
@@ -65,7 +72,7 @@ def two_scans() -> Cloud:
     rng = np.random.default_rng(4)
     sensors = ((-1.0, -3.6, 1.7), (1.7, -3.2, 1.5))
     first, second = (
-        _scan(court(), sensor, _towards(sensor, (0.0, 0.4, 0.9), 74.0, 52.0, 330, 230), rng, 0.002)
+        _scan(court(), sensor, _towards(sensor, (0.0, 0.4, 0.9), 74.0, 52.0, 458, 328), rng, 0.002)
         for sensor in sensors
     )
     truth = se3.transform(
@@ -84,6 +91,7 @@ DATASETS: dict[str, Callable[[], Cloud]] = {
     "statue": statue_scan,
     "two-scans": two_scans,
 }
+_making = {name: Lock() for name in DATASETS}
 
 
 def _sphere(turns: int, rows: int, elevations: tuple[float, float]) -> Array:
@@ -112,6 +120,7 @@ def _scan(
     reach: float = 30.0, rings: bool = False,
 ) -> Cloud:  # fmt: skip
     """What comes back: the nearest body on each ray, its range with noise, and light by angle and distance."""
+    begins("Simulating a scanner")
     hits = cast(sensor, rays, [thing.body for thing in things])
     seen = np.flatnonzero(hits.distance < reach)
     body, ray, distance = hits.body[seen], rays[seen], hits.distance[seen]

@@ -6,10 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
+from pydantic import model_validator
+
 from geometry.arrays import Array
-from sims.kit.params import Params, choice, number, switch, text
+from sims.kit.params import Params, choice, number, spell, switch, text
 from sims.kit.sim import DRAWN, Step, View
-from sims.point_cloud import library
+from sims.point_cloud import library, processes
 from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
 from sims.point_cloud.shown import Drawn
 
@@ -17,12 +19,13 @@ MOST_POINTS = 10_000_000
 VIEWS = {
     "room": View((4.6, -5.8, 4.4), (0.0, 0.0, 1.15), 3.65),
     "street": View((26.0, -44.0, 34.0), (4.0, 0.0, 0.0), 33.0),
-    "statue": View((2.6, -3.6, 2.2), (0.05, 0.0, 1.15), 1.6),
+    "statue": View((2.6, -3.6, 2.2), (0.05, 0.0, 1.15), 1.85),
     "two-scans": View((3.4, -5.6, 3.4), (-0.1, -0.1, 0.95), 3.3),
 }
 OWN = "Your own data"
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
+
 WHAT_DISTANCE_IS = {
     "none": "Distance of the process",
     "ground": "Half thickness of the ground",
@@ -31,6 +34,11 @@ WHAT_DISTANCE_IS = {
     "register": "Reach of the pairs",
     "surface": "Radius of the ball",
 }
+
+
+def first_step(process: Any) -> int:
+    """Where a process is when nobody says where."""
+    return 0 if process == "register" else 2
 
 
 class CloudParams(Params):
@@ -44,9 +52,15 @@ class CloudParams(Params):
             "file": "From a file",
         },
     )  # fmt: skip
-    color: Literal["height", "intensity", "rgb", "normals"] = choice(
+    color: Literal["height", "intensity", "rgb", "normals", "variation"] = choice(
         "rgb", title="Colour by", description="What the colour of each point says",
-        labels={"height": "Height", "intensity": "Intensity", "rgb": "Measured colour", "normals": "Normals"},
+        labels={
+            "height": "Height",
+            "intensity": "Intensity",
+            "rgb": "Measured colour",
+            "normals": "Normals",
+            "variation": "Surface variation",
+        },
     )  # fmt: skip
     point_size: float = number(
         2.0, 0.5, 10.0, step=0.5, title="Point size", description="About in pixels, as the sim opens"
@@ -55,7 +69,7 @@ class CloudParams(Params):
         0.0, 0.0, 1.0, step=0.005, unit="m", title="Voxel size",
         description="Edge of the cells; the points in each become their mean. At 0 all points are shown",
     )  # fmt: skip
-    show_normals: bool = switch(False, title="Normals", description="Short lines along the normals, to the sensor")
+    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals, to the sensor")
     neighbors: int = number(
         16, 5, 50, step=1, title="Neighbours k",
         description="How many nearest points, itself included, a normal and an outlier are judged by",
@@ -78,7 +92,8 @@ class CloudParams(Params):
     )  # fmt: skip
     step: int = number(
         2, 0, MOST_STEPS, step=1, title="Step",
-        description="How far the process has come: 0 before, 1 found, 2 done; in a registration, steps of ICP",
+        description="How far the process has come: 0 before, 1 found, 2 done, as at first; in a registration, steps "
+        "of ICP, at first 0",
     )  # fmt: skip
     method: Literal["plane", "point"] = choice(
         "plane", title="ICP pairs", description="What each point of the second scan is drawn to",
@@ -101,25 +116,59 @@ class CloudParams(Params):
     def options(self, name: str) -> Mapping[Any, str]:
         return library.offered(self.file) if name == "file" else super().options(name)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _begun(cls, values: Any) -> Any:
+        """Without a step, a registration is at its start; every other process is at its result."""
+        if isinstance(values, Mapping) and "step" not in values:
+            return {**values, "step": first_step(values.get("process"))}
+        return values
+
+    def query_items(self) -> dict[str, str]:
+        items = {name: text for name, text in super().query_items().items() if name != "step"}
+        return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
+
+    @property
+    def course(self) -> tuple[Any, ...]:
+        """All that a registration follows from."""
+        neighbors = self.neighbors if self.method == "plane" else 16
+        return self.dataset, self.file, self.voxel_size, neighbors, self.method, self.distance
+
+    @property
+    def last_step(self) -> int:
+        """The process's last step, as far as that is known: a registration must have been worked out once."""
+        return processes.LENGTHS.get(self.course, MOST_STEPS) if self.process == "register" else 2
+
     def bounds(self, name: str) -> tuple[float, float]:
-        if name == "step" and self.process != "register":
-            return 0, 2
+        if name == "step":
+            return 0, max(self.last_step, self.step, 1)  # a link may name any step: beyond the last one is the last
         return super().bounds(name)
+
+    def form(self) -> tuple[Any, ...]:
+        return *super().form(), self.last_step
 
     def label(self, name: str) -> str:
         return WHAT_DISTANCE_IS[self.process] if name == "distance" else super().label(name)
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
-        """A process begins at its result, a registration at its start; a point that may be another is let go."""
-        now = dict(changes)
+        """What `changed` does; no step is beyond the last, and a point that may be another is let go."""
+        now = self._with_step(changes)
         turned = {name for name, value in now.items() if value != getattr(self, name)}
         if "file" in turned and now["file"]:
             now.setdefault("dataset", "file")
-        if "process" in turned:
-            now.setdefault("step", 0 if now["process"] == "register" else 2)
+        if "step" in now:
+            now["step"] = min(now["step"], self.model_copy(update=now).last_step)
         if self.selected is not None and self._renumbers(turned):
             now.setdefault("selected", None)
         return super().moved(now)
+
+    def changed(self, changes: Mapping[str, Any]) -> Self:
+        """A process begins at its result, a registration at its start."""
+        return super().changed(self._with_step(changes))
+
+    def _with_step(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        turned = changes.get("process", self.process) != self.process
+        return {**({"step": first_step(changes["process"])} if turned else {}), **changes}
 
     def _renumbers(self, turned: set[str]) -> bool:
         others = turned - KEEPS_POINTS
@@ -130,13 +179,14 @@ class CloudParams(Params):
 
 @dataclass(frozen=True, eq=False)
 class Selected:
-    """One point: what was measured there, and its normal (null where the neighbours have none)."""
+    """One point: what was measured there, and what its neighbours say: normal and surface variation, or null."""
 
     index: int
     position: Array
     color: Array | None
     normal: Array | None
     intensity: float | None
+    variation: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,8 +217,9 @@ def play(p: CloudParams) -> Iterator[Step]:
         yield Step({"voxel_size": 0.0}, 0.0)
         yield Step({"voxel_size": 0.25}, 4.0)
         return
-    last = MOST_STEPS if p.process == "register" else 2
-    for step in range(last + 1):
+    for step in range(MOST_STEPS + 1):
+        if step > p.last_step:  # which may be known only after the first
+            return
         yield Step({"step": step}, 0.0)
         yield Step({"step": step}, 0.25 if p.process == "register" else 1.0)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from sims.kit.palette import RGB, Palette, rgb
@@ -13,34 +14,40 @@ from sims.kit.pane import Pane
 from sims.kit.plot import Plot, room
 from sims.kit.readout import THIN, figure, quantity
 from sims.point_cloud import colors
-from sims.point_cloud.cloud import Cloud, Colors
+from sims.point_cloud.cloud import Colors
 from sims.point_cloud.model import CloudParams, CloudSolution
 from sims.point_cloud.shown import MARKS
-from sims.point_cloud.solving import source
-from sims.point_cloud.work import measured, span
+from sims.point_cloud.work import BINS, Tally
 
-BINS = 48
 WIDTH, HEIGHT, LEFT, END, FLOOR, TOP = 320, 112, 10, 310, 84, 8
-UNITS = {"height": "m", "intensity": ""}
-NAMES = {"height": "Height", "intensity": "Intensity"}
+NAMES = {"height": "Height", "intensity": "Intensity", "variation": "Surface variation"}
+UNITS = {"height": "m", "intensity": "", "variation": ""}
 
 
-def panes(p: CloudParams, s: CloudSolution, _: Palette) -> list[Pane]:
+def panes(_: CloudParams, s: CloudSolution, __: Palette) -> list[Pane]:
     """The colour bar, and in a registration the error of each step."""
-    return [legend(p, s), errors(s)] if s.registration is not None else [legend(p, s)]
+    if not s.points_in:
+        return []
+    more = [marked(s)] if len(s.drawn.marked.rows) and (s.ground or s.outliers) else []
+    return [legend(s), *([errors(s)] if s.registration is not None else more)]
 
 
-def legend(p: CloudParams, s: CloudSolution) -> Pane:
+def legend(s: CloudSolution) -> Pane:
     """What the colours of the points say."""
     if s.registration is not None:
         return _key("The two scans", [(MARKS["fixed"], "first scan, stays"), (MARKS["moves"], "second scan, moves")])
     if s.clusters is not None:
         return _clusters(s)
-    if s.colored_by in NAMES:
-        return _bar(source(p), s.colored_by)
-    if s.colored_by == "normals":
+    if s.drawn.tally is None:
         return _key("Normals", [(color, f"to {word}") for color, word in DIRECTIONS], "each direction has its colour")
-    return _brightness(source(p))
+    return _bar(s.drawn.tally)
+
+
+def marked(s: CloudSolution) -> Pane:
+    """What the process has found."""
+    what, words = ("ground", "points of the ground") if s.ground is not None else ("outliers", "outliers, larger")
+    pane = _key("Marked", [(MARKS[what], words)])
+    return replace(pane, name="marked")
 
 
 DIRECTIONS: tuple[tuple[RGB, str], ...] = (
@@ -57,26 +64,16 @@ def _clusters(s: CloudSolution) -> Pane:
 
 
 @lru_cache(maxsize=64)
-def _bar(cloud: Cloud, kind: str) -> Pane:
+def _bar(tally: Tally) -> Pane:
     """How many points have each value, in its colour, with the values from and to which the colours go."""
-    low, high = span(cloud, kind)
-    values = np.clip(measured(cloud, kind), low, high)
-    counts, _ = np.histogram(values, BINS, (low, high))
-    bars = _bars(counts, colors.ramp(kind)[np.linspace(0, 255, BINS).astype(int)])
-    ticks = _words(*(quantity(low + (high - low) * f, UNITS[kind], 2) for f in (0.0, 0.5, 1.0)))
-    note = f"from {figure(low, 2)} to {quantity(high, UNITS[kind], 2)}"
-    return _pane(NAMES[kind], note, bars + ticks, HEIGHT)
-
-
-@lru_cache(maxsize=64)
-def _brightness(cloud: Cloud) -> Pane:
-    """How many points are how bright, and the mean colour of those."""
-    assert cloud.colors is not None
-    level = np.minimum(cloud.colors.max(axis=1).astype(np.intp) * BINS // 256, BINS - 1)
-    counts = np.bincount(level, minlength=BINS)
-    means = np.stack([np.bincount(level, c, BINS) for c in cloud.colors.T.astype(float)], axis=1)
-    bars = _bars(counts, np.rint(means / np.maximum(counts, 1)[:, None]).astype(np.uint8))
-    return _pane("Measured colour", "by brightness", bars + _words("dark", "", "bright"), HEIGHT)
+    bars = _bars(tally.counts, tally.paint)
+    if tally.kind == "rgb":
+        return _pane("Measured colour", "by brightness", bars + _words("dark", "", "bright"), HEIGHT)
+    low, high, unit = tally.low, tally.high, UNITS[tally.kind]
+    digits = max(2, 1 - math.floor(math.log10(high))) if tally.kind == "variation" else 2
+    ticks = _words(*(quantity(low + (high - low) * f, unit, digits) for f in (0.0, 0.5, 1.0)))
+    note = f"from {figure(low, digits)} to {quantity(high, unit, digits)}"
+    return _pane(NAMES[tally.kind], note, bars + ticks, HEIGHT)
 
 
 def _bars(counts: npt.NDArray[Any], paint: Colors) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -11,7 +12,7 @@ import numpy as np
 from geometry import GeometryError, clouds, se3
 from geometry.arrays import Array
 from geometry.clouds import Indices
-from sims.kit.progress import goes_on
+from sims.kit.progress import begins, goes_on
 from sims.kit.sim import DRAWN
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.work import normals, parts, spacing
@@ -24,6 +25,9 @@ LEAST_CLUSTER = 30
 MOST_STEPS = 40
 PAIRED = 12_000
 """Points of the second scan, about, that take part in a registration."""
+LENGTHS: dict[Hashable, int] = {}
+"""How many steps registrations had, by what they follow from; see `remember`."""
+MOST_LENGTHS = 1_000
 MESHED = 8_000
 """Points of a surface, about: an alpha shape takes its time."""
 
@@ -104,6 +108,7 @@ class Surface:
 def ground(cloud: Cloud, thin: Cloud, distance: float) -> Ground | None:
     """The ground, within 20° of level; None where no plane is, or there are too few points."""
     distance = distance or 2.0 * spacing(cloud)
+    begins("Looking for the ground")
     try:
         plane = clouds.ransac_plane(thin.points, distance, up=UP, tilt=STEEPEST)
     except GeometryError:
@@ -121,6 +126,7 @@ def clusters(cloud: Cloud, thin: Cloud, distance: float, voxel: float) -> Cluste
         above = np.delete(above, below.on)
     distance = distance or max(8.0 * spacing(cloud), 2.0 * voxel)
     least = LEAST_CLUSTER if voxel == 0.0 else 5
+    begins("Growing clusters")
     found = clouds.clusters(thin.points[above], distance, least=least, progress=goes_on)
     labels = np.full(len(thin), -2, np.intp)
     labels[above] = found.labels
@@ -131,6 +137,7 @@ def clusters(cloud: Cloud, thin: Cloud, distance: float, voxel: float) -> Cluste
 @lru_cache(maxsize=16)
 def outliers(thin: Cloud, neighbors: int, deviations: float) -> Outliers:
     """Points that are unusually far from their neighbours."""
+    begins("Looking for outliers")
     found = clouds.outliers(thin.points, neighbors, deviations, progress=goes_on)
     off = np.flatnonzero(~found.keep)
     return Outliers(len(off), found.threshold, off)
@@ -157,13 +164,14 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
     target = clouds.Target(thin.points[rows[0]], normals(thin, neighbors)[rows[0]])
     source = thin.points[rows[1]][:: max(1, len(rows[1]) // PAIRED)]
     reaches = (distance,) if distance else (18.0 * spacing(cloud), 3.0 * max(spacing(cloud), spacing(thin)))
+    begins("Registering the scans")
     steps: list[clouds.Step] = []
     converged = False
     for reach in reaches:
         start = steps[-1].T_target_source if steps else np.eye(4)
         left = MOST_STEPS + 1 - len(steps)
         for k, step in enumerate(clouds.icp(source, target, reach, method=method, start=start, most=left)):
-            goes_on()
+            goes_on(len(steps) / MOST_STEPS)
             if k or not steps:
                 steps.append(step)
             converged = k < left
@@ -177,6 +185,13 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
     return Course(
         tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1]
     )
+
+
+def remember(key: Hashable, way: Course) -> None:
+    """Keep how many steps a registration has, longer than the registration: it bounds a slider."""
+    LENGTHS[key] = len(way.steps) - 1
+    if len(LENGTHS) > MOST_LENGTHS:
+        LENGTHS.pop(next(iter(LENGTHS)), None)
 
 
 def registered(cloud: Cloud, way: Course, number: int) -> Registered:
@@ -217,6 +232,7 @@ def surface(thin: Cloud, voxel: float, distance: float) -> Surface | None:
     """The alpha shape of one point a cell, with cells large enough that it doesn't take long; None if all is flat."""
     if not len(thin):
         return None
+    begins("Rolling a ball over the points")
     low, high = clouds.bounds(thin.points)
     cell = max(voxel, float((high - low).max()) / 90.0)
     points = _meshed(thin.points, cell) if cell > voxel else thin.points

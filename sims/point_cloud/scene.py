@@ -11,7 +11,7 @@ from geometry import quaternion
 from geometry.arrays import Array
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.sim import View
-from sims.kit.stage import Cloud, Lines, Node, Stage
+from sims.kit.stage import Arrows, Cloud, Node, Stage
 from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
 from sims.point_cloud.shown import Layer
 
@@ -22,6 +22,8 @@ MARKED = 1.5
 """How much larger marked points are."""
 NAMES = 4
 ANCHORS = {"x": "top-center", "y": "top-left", "z": "center-left"}
+SLENDER = 0.05
+"""Radius of an arrow's shaft, of its length."""
 RING = 0.04
 """Radius of the ring round the selected point, of the view's."""
 
@@ -50,8 +52,10 @@ class CloudScene:
             self._turn_to(view, s)
         size = p.point_size * view.radius / PIXELS
         alone = s.surface is not None and p.step == 2
-        self.base.draw(s.drawn.base, s.drawn.base_normals, size, hidden=alone)
-        self.marked.draw(s.drawn.marked, s.drawn.marked_normals, size if s.registration else MARKED * size)
+        self.base.draw(s.drawn.base, size, hidden=alone)
+        self.marked.draw(s.drawn.marked, size if s.registration else MARKED * size)
+        self.base.point(s.drawn.base_normals, s.drawn.arrow)
+        self.marked.point(s.drawn.marked_normals, s.drawn.arrow)
         self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
         self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
         self.ring.draw(s.selected, view.radius)
@@ -91,19 +95,23 @@ class Points:
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
         self.dots: Cloud = stage.cloud(f"{name}/points", NOWHERE, "ink")
-        self.lines: Lines = stage.lines(f"{name}/normals", np.zeros((2, 3)), "ink", width=1.2)
+        self.arrows: Arrows = stage.arrows(f"{name}/normals", np.zeros((1, 2, 3)), "ink")
         self._layer: Layer | None = None
         self._normals: Array | None = None
 
-    def draw(self, layer: Layer, normals: Array, size: float, *, hidden: bool = False) -> None:
+    def draw(self, layer: Layer, size: float, *, hidden: bool = False) -> None:
         self.dots.show(len(layer.points) > 0 and not hidden)
         self.dots.size(size)
         if layer is not self._layer and len(layer.points):
             self.dots.draw(layer.points, layer.colors)
         self._layer = layer
-        self.lines.show(len(normals) > 0)
+
+    def point(self, normals: Array, length: float) -> None:
+        """Arrows (n, 2, 3) of a length."""
+        self.arrows.show(len(normals) > 0)
         if normals is not self._normals and len(normals):
-            self.lines.pieces(normals)
+            self.arrows.draw(normals)
+            self.arrows.thickness(SLENDER * length)
         self._normals = normals
 
 

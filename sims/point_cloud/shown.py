@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -15,10 +16,14 @@ from sims.kit.palette import LIGHT, rgb
 from sims.kit.sim import View
 from sims.point_cloud import colors, processes
 from sims.point_cloud.cloud import Cloud, Colors
-from sims.point_cloud.work import normals, painted, parts
+from sims.point_cloud.work import Tally, normals, painted, parts
 
-MOST_LINES = 2_000
-"""Normals that are drawn, evenly chosen."""
+MOST_ARROWS = 1_200
+"""Normals that are drawn: one in each cell of a grid that is as fine as that allows."""
+ARROW = 0.8
+"""Their length, of how far they are apart."""
+FEW = 0.05
+"""Of the mean number of points in a cell: with fewer, they are likelier outliers."""
 MARKS = {"ground": rgb("#c46a1a"), "outliers": rgb(LIGHT.warn), "fixed": rgb(LIGHT.left), "moves": rgb(LIGHT.right)}
 Floats = npt.NDArray[np.float32]
 
@@ -41,6 +46,8 @@ class Drawn:
     T: Array
     base_normals: Array
     marked_normals: Array
+    arrow: float
+    """How long the normals are drawn, in metres."""
     ground: Array | None
     """Corners (4, 3) of the piece of the plane that is drawn."""
     mesh: processes.Surface | None
@@ -48,10 +55,14 @@ class Drawn:
     """Words at places: the largest clusters."""
     view: View
     """Of the whole cloud."""
+    cloud: Cloud
+    """All of it, before anything was done."""
+    tally: Tally | None
+    """What the colour bar says."""
 
 
 NOTHING = np.empty(0, np.intp)
-NO_LINES = np.empty((0, 2, 3))
+NO_ARROWS = np.empty((0, 2, 3))
 
 
 @lru_cache(maxsize=16)
@@ -97,12 +108,41 @@ def nothing(cloud: Cloud, thin: Cloud) -> Layer:
 
 
 @lru_cache(maxsize=16)
-def lines(thin: Cloud, neighbors: int, points: Layer, length: float) -> Array:
-    """Pieces (n, 2, 3) from some of a layer's points along their normals."""
-    rows = points.rows[:: max(1, -(-len(points.rows) // MOST_LINES))]
+def arrows(thin: Cloud, neighbors: int, voxel: float, points: Layer) -> Array:
+    """Tails and tips (n, 2, 3): from some of a layer's points, evenly chosen, along their normals."""
+    chosen, _ = _spread(thin, voxel)
+    rows = np.intersect1d(chosen, points.rows)
     vectors = normals(thin, neighbors)[rows]
     start = thin.points[rows]
-    return np.stack([start, start + length * vectors], axis=1)[vectors.any(axis=1)]
+    return np.stack([start, start + arrow_length(thin, voxel) * vectors], axis=1)[vectors.any(axis=1)]
+
+
+def arrow_length(thin: Cloud, voxel: float) -> float:
+    """So short, in metres, that no arrow reaches the next."""
+    return ARROW * _spread(thin, voxel)[1]
+
+
+@lru_cache(maxsize=16)
+def _spread(thin: Cloud, voxel: float) -> tuple[Indices, float]:
+    """Rows of points that are about so many metres apart: few enough to draw something at each."""
+    if not len(thin):
+        return NOTHING, 1.0
+    low, high = clouds.bounds(thin.points)
+    cell = max(voxel, float((high - low).max()) / 100.0, 1e-3)
+    while len(rows := _one_a_cell(thin, cell)) > MOST_ARROWS:
+        cell *= 1.1 * math.sqrt(len(rows) / MOST_ARROWS)
+    return rows, cell
+
+
+def _one_a_cell(thin: Cloud, cell: float) -> Indices:
+    """The first point in each cell, of each scan by itself; none where there are far fewer than elsewhere."""
+    chosen = []
+    for rows in parts(thin):
+        cells = clouds.voxels(thin.points[rows], cell)
+        first = np.empty(len(cells.counts), np.intp)
+        first[cells.labels[::-1]] = rows[::-1]
+        chosen.append(first[cells.counts >= FEW * len(rows) / max(len(first), 1)])
+    return np.concatenate(chosen)
 
 
 def patch(found: processes.Ground, low: Array, high: Array) -> Array:

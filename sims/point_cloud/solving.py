@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from geometry import clouds, se3
 from geometry.arrays import Array
+from sims.kit.progress import begins
 from sims.point_cloud import library, processes, shown
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.files import ply_bytes
 from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
-from sims.point_cloud.shown import NO_LINES, Drawn, Layer, layer
-from sims.point_cloud.work import colored_by, normals, spacing, thinned
+from sims.point_cloud.shown import NO_ARROWS, Drawn, Layer, layer
+from sims.point_cloud.work import LOCAL, colored_by, local, tally, thinned
 
 MOST_LABELS = 7
 
@@ -41,6 +43,7 @@ class Result:
 
 def solve(p: CloudParams) -> CloudSolution:
     """All that is shown of a state."""
+    begins("Fetching the cloud")
     cloud = source(p)
     thin = thinned(cloud, p.voxel_size)
     result = PROCESSES[p.process](p, cloud, thin)
@@ -57,7 +60,12 @@ def solve(p: CloudParams) -> CloudSolution:
 
 def plain(p: CloudParams, cloud: Cloud, thin: Cloud, kind: str = "all", result: object = None) -> Layer:
     """Points in the colours of the state."""
-    return layer(cloud, thin, p.color, p.neighbors if p.color == "normals" else 0, kind, "", result)
+    return layer(cloud, thin, p.color, _neighbors(p), kind, "", result)
+
+
+def _neighbors(p: CloudParams) -> int:
+    """What the colours depend on: 0 where that isn't the neighbours."""
+    return p.neighbors if p.color in LOCAL else 0
 
 
 def marked(cloud: Cloud, thin: Cloud, kind: str, mark: str, result: object) -> Layer:
@@ -108,9 +116,10 @@ def _outliers(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
 
 
 def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
-    way = processes.course(cloud, thin, p.method, p.neighbors if p.method == "plane" else 16, p.distance)
+    way = processes.course(cloud, thin, p.method, p.course[3], p.distance)
     if way is None:
         return _none(p, cloud, thin)
+    processes.remember(p.course, way)
     first, second = (marked(cloud, thin, kind, mark, None) for kind, mark in (("first", "fixed"), ("second", "moves")))
     found = processes.registered(cloud, way, p.step)
     return Result(first, second, found.T, registration=found)
@@ -151,25 +160,28 @@ def _selected(p: CloudParams, thin: Cloud, result: Result) -> Selected | None:
         return None
     at = p.selected - len(result.base.rows)
     row, T = (result.base.rows[p.selected], np.eye(4)) if at < 0 else (result.marked.rows[at], result.T)
-    normal = normals(thin, p.neighbors)[row]
+    near = local(thin, p.neighbors)
+    normal, variation = near.normals[row], float(near.variation[row])
     return Selected(
         index=p.selected,
         position=se3.apply(T, thin.points[row]),
         color=None if thin.colors is None else thin.colors[row],
         normal=T[:3, :3] @ normal if normal.any() else None,
         intensity=None if thin.intensity is None else float(thin.intensity[row]),
+        variation=None if math.isnan(variation) else variation,
     )
 
 
 def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array, high: Array) -> Drawn:
-    base, over = NO_LINES, NO_LINES
+    base, over, length = NO_ARROWS, NO_ARROWS, 1.0
     if p.show_normals:
-        length = 4.0 * max(spacing(cloud), p.voxel_size / 2.0)
-        base, over = (shown.lines(thin, p.neighbors, one, length) for one in (result.base, result.marked))
+        length = shown.arrow_length(thin, p.voxel_size)
+        base, over = (shown.arrows(thin, p.neighbors, p.voxel_size, one) for one in (result.base, result.marked))
     ground = None if result.ground is None else shown.patch(result.ground, low, high)
     return Drawn(
-        result.base, result.marked, result.T, base, over, ground, result.surface, result.names,
-        VIEWS[p.dataset] if p.dataset in VIEWS else shown.whole(cloud),
+        result.base, result.marked, result.T, base, over, length, ground, result.surface, result.names,
+        VIEWS[p.dataset] if p.dataset in VIEWS else shown.whole(cloud), cloud,
+        tally(cloud, thin, colored_by(cloud, p.color), _neighbors(p)),
     )  # fmt: skip
 
 

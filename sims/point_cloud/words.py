@@ -10,7 +10,6 @@ from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quant
 from sims.point_cloud.library import UPLOAD
 from sims.point_cloud.model import CloudParams, CloudSolution
 from sims.point_cloud.processes import Registered
-from sims.point_cloud.solving import source
 
 SENSORS = {
     "room": "a colour scanner at two places in a room",
@@ -42,12 +41,12 @@ def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     if p.dataset in SENSORS:
         yield Note(f"Simulated, not measured: {SENSORS[p.dataset]}.")
     else:
-        yield from _file(p)
+        yield from _file(p, s)
 
 
-def _file(p: CloudParams) -> Iterator[Readout]:
+def _file(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     """What became of a file."""
-    cloud = source(p)
+    cloud = s.drawn.cloud
     if not len(cloud):
         return
     yield Note(f"From the file “{cloud.name}”.")
@@ -88,6 +87,8 @@ def _selected(s: CloudSolution) -> Iterator[Formula]:
         yield Formula("Its normal, towards the sensor", symbol("n"), row(chosen.normal.tolist()))
     if chosen.intensity is not None:
         yield Formula("Its intensity", symbol("I"), mathml(chosen.intensity))
+    if chosen.variation is not None:
+        yield Formula("Its surface variation: 0 on a plane, at most 1/3", symbol("σ", "n"), mathml(chosen.variation, 4))
 
 
 def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
@@ -181,4 +182,7 @@ def describe(p: CloudParams, s: CloudSolution) -> str:
     return words + "."
 
 
-COLOURS = {"height": "height", "intensity": "intensity", "rgb": "measured colour", "normals": "normals"}
+COLOURS = {
+    "height": "height", "intensity": "intensity", "rgb": "measured colour", "normals": "normals",
+    "variation": "surface variation",
+}  # fmt: skip

@@ -7,6 +7,7 @@ nothing again. The newest few are kept: a slider that is dragged leaves many beh
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -14,9 +15,13 @@ import numpy as np
 from geometry import clouds
 from geometry.arrays import Array
 from geometry.clouds import Indices
-from sims.kit.progress import goes_on
+from sims.kit.progress import begins, goes_on
 from sims.point_cloud import colors
 from sims.point_cloud.cloud import Cloud, Colors
+
+BINS = 48
+LOCAL = ("normals", "variation")
+"""Colours that follow from each point's neighbours."""
 
 
 def parts(cloud: Cloud) -> Iterator[Indices]:
@@ -32,6 +37,7 @@ def thinned(cloud: Cloud, size: float) -> Cloud:
     """The cloud with one point, the mean, for each cell of edge `size` in metres; itself for size 0."""
     if size == 0.0:
         return cloud
+    begins("Downsampling")
     thin = [_thinned(cloud if len(rows) == len(cloud) else cloud.only(rows), size) for rows in parts(cloud)]
     return thin[0] if len(thin) == 1 else thin[0].followed_by(thin[1])
 
@@ -47,18 +53,40 @@ def _thinned(cloud: Cloud, size: float) -> Cloud:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Local:
+    """What the neighbours of each point say: unit normals (N, 3) to the sensor, and the surface variation (N,).
+
+    Where they are on a line, or too few, there is no normal and no variation: zero and NaN.
+    """
+
+    normals: Array
+    variation: Array
+
+
 @lru_cache(maxsize=16)
-def normals(cloud: Cloud, neighbors: int) -> Array:
-    """Unit normals (N, 3) to the sensor; zero where there is none."""
-    found = np.empty_like(cloud.points)
+def local(cloud: Cloud, neighbors: int) -> Local:
+    """Normals and surface variation of a cloud, of each scan by itself."""
+    begins("Estimating normals")
+    vectors, variation = np.zeros_like(cloud.points), np.full(len(cloud), np.nan)
+    before = 0
+
+    def progress(done: float) -> None:
+        goes_on((before + done * len(rows)) / len(cloud))
+
     for rows in parts(cloud):
         sensor = cloud.sensor if cloud.sensor is None or cloud.sensor.ndim == 1 else cloud.sensor[rows]
-        here = cloud.points[rows]
-        if len(here) >= 3:
-            found[rows] = clouds.normals(here, neighbors, sensor=sensor, progress=goes_on).normals
-        else:
-            found[rows] = np.nan
-    return np.nan_to_num(found, nan=0.0)
+        if len(rows) >= 3:
+            found = clouds.normals(cloud.points[rows], neighbors, sensor=sensor, progress=progress)
+            vectors[rows] = np.nan_to_num(found.normals, nan=0.0)
+            variation[rows] = np.where(found.defined, found.variation, np.nan)
+        before += len(rows)
+    return Local(vectors, variation)
+
+
+def normals(cloud: Cloud, neighbors: int) -> Array:
+    """Unit normals (N, 3) to the sensor; zero where there is none."""
+    return local(cloud, neighbors).normals
 
 
 @lru_cache(maxsize=32)
@@ -67,18 +95,57 @@ def spacing(cloud: Cloud) -> float:
     return (clouds.spacing(cloud.points) if len(cloud) > 1 else 0.0) or 1.0
 
 
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """How many points have a value in each of some equal bins from `low` to `high`, and those bins' colours."""
+
+    kind: str
+    low: float
+    high: float
+    counts: Indices
+    paint: Colors
+
+
 @lru_cache(maxsize=32)
-def span(cloud: Cloud, kind: str) -> tuple[float, float]:
-    """What the colours of height or intensity go from and to: but for the farthest half per cent at each end."""
-    if not len(cloud):
+def tally(cloud: Cloud, thin: Cloud, kind: str, neighbors: int) -> Tally | None:
+    """What the colour bar says of height, intensity, surface variation or measured colour; None of directions."""
+    if kind == "normals":
+        return None
+    if kind == "rgb" and cloud.colors is not None:
+        return _brightness(cloud.colors)
+    low, high = span(cloud, thin, kind, neighbors)
+    values = measured(cloud, thin, kind, neighbors)
+    counts, _ = np.histogram(np.clip(values[np.isfinite(values)], low, high), BINS, (low, high))
+    return Tally(kind, low, high, counts, colors.ramp(kind)[np.linspace(0, 255, BINS).astype(int)])
+
+
+def _brightness(measured: Colors) -> Tally:
+    """How many points are how bright, and the mean colour of those."""
+    level = np.minimum(measured.max(axis=1).astype(np.intp) * BINS // 256, BINS - 1)
+    counts = np.bincount(level, minlength=BINS)
+    means = np.stack([np.bincount(level, c, BINS) for c in measured.T.astype(float)], axis=1)
+    return Tally("rgb", 0.0, 1.0, counts, np.rint(means / np.maximum(counts, 1)[:, None]).astype(np.uint8))
+
+
+@lru_cache(maxsize=32)
+def span(cloud: Cloud, thin: Cloud, kind: str, neighbors: int) -> tuple[float, float]:
+    """What the colours of a value go from and to: but for the farthest half per cent at each end."""
+    values = measured(cloud, thin, kind, neighbors)
+    values = values[np.isfinite(values)]
+    if not len(values):
         return 0.0, 1.0
-    values = measured(cloud, kind)
     low, high = np.percentile(values, (0.5, 99.5)).tolist()
+    if kind == "variation":
+        return 0.0, high or 1.0 / 3.0
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
-def measured(cloud: Cloud, kind: str) -> Array:
-    """Heights or intensities (N,)."""
+def measured(cloud: Cloud, thin: Cloud, kind: str, neighbors: int) -> Array:
+    """Heights or intensities of the whole cloud, or the variation of its thinned points, which is NaN for some."""
+    return local(thin, neighbors).variation if kind == "variation" else _own(cloud, kind)
+
+
+def _own(cloud: Cloud, kind: str) -> Array:
     return cloud.points[:, 2] if kind == "height" or cloud.intensity is None else cloud.intensity
 
 
@@ -96,4 +163,4 @@ def painted(cloud: Cloud, thin: Cloud, color: str, neighbors: int) -> Colors:
         return colors.of_directions(normals(thin, neighbors))
     if kind == "rgb" and thin.colors is not None:
         return colors.of_rgb(thin.colors)
-    return colors.of_values(measured(thin, kind), span(cloud, kind), kind)
+    return colors.of_values(measured(thin, thin, kind, neighbors), span(cloud, thin, kind, neighbors), kind)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import ViewportSize
+from playwright.sync_api import TimeoutError, ViewportSize
 
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import ply_bytes, read
 from tests.e2e.conftest import Classroom
+from tests.e2e.course import CourseSite
 from tests.e2e.learner import Learner
 from tests.e2e.picture import Picture
 
@@ -80,6 +82,26 @@ def test_a_registration_is_stepped(classroom: Classroom) -> None:
     assert "Error of the pairs" in learner.scene.html("s3-pane")
 
 
+def test_long_work_says_how_far_it_is_and_is_cancelled(classroom: Classroom) -> None:
+    learner = classroom.open("point-cloud/embed?dataset=two-scans&color=variation&neighbors=5", size=SMALL)
+    agree(learner, neighbors=5)
+    assert any(cancelled(learner, neighbors) for neighbors in (50, 49, 48, 47)), "nothing was said of long work"
+    agree(learner, neighbors=learner.params["neighbors"])
+    learner.frame.get_by_role("group", name="Work in progress").wait_for(state="hidden")
+
+
+def cancelled(learner: Learner, neighbors: int) -> bool:
+    """Begin long work and cancel it; False if it was done before, as on a quick machine it may be."""
+    before, version = learner.params["neighbors"], learner.sockets.state["version"]
+    work = learner.frame.get_by_role("group", name="Work in progress")
+    learner.type("neighbors", str(neighbors))
+    with suppress(TimeoutError):
+        work.get_by_text("Estimating normals").wait_for(timeout=8_000)
+        work.get_by_role("button", name="Cancel").dispatch_event("click", timeout=1_000)
+    learner.until(lambda: learner.sockets.state["version"] > version)
+    return bool(learner.params["neighbors"] == before)
+
+
 def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_path: Path) -> None:
     learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
     other = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
@@ -109,6 +131,35 @@ def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_pat
 def agree_on_file(learner: Learner) -> dict[str, Any]:
     assert learner.params["dataset"] == "file"
     return learner.solved()
+
+
+def test_a_file_that_takes_long_is_given_up(classroom: Classroom, tmp_path: Path) -> None:
+    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    path = tmp_path / "long.xyz"
+    path.write_text("0 0 0\n" * 100_000)
+    slow = {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": 20_000}
+    learner.page.context.new_cdp_session(learner.page).send("Network.emulateNetworkConditions", slow)
+    learner.frame.get_by_role("button", name="Your own data").click()
+    learner.frame.get_by_label("Bring a file").set_input_files(path)
+    learner.frame.get_by_role("progressbar", name="Upload").wait_for()
+    learner.press("Cancel")
+    status = learner.frame.locator("[data-s3-file-status]")
+    learner.until(lambda: "given up. Nothing has changed" in (status.text_content() or ""))
+    assert learner.params["dataset"] == "room"
+
+
+def test_a_file_is_brought_in_a_sandboxed_frame(classroom: Classroom, tmp_path: Path) -> None:
+    """Its origin is its own: what it sends crosses origins, and the browser asks the server first."""
+    path = tmp_path / "mine.csv"
+    path.write_text("x,y,z\n0,0,0\n2,1,0.5\n1,1,1\n")
+    learner = classroom.enter()
+    with CourseSite() as course:
+        course.show(learner, "point-cloud/embed?voxel_size=0.5", 'sandbox="allow-scripts"')
+        learner.enter_frame()
+        learner.frame.get_by_role("button", name="Your own data").click()
+        learner.frame.get_by_label("Bring a file").set_input_files(path)
+        assert learner.until(lambda: agree_on_file(learner))["points_in"] == 3
+        learner.says("“mine.csv”")
 
 
 @pytest.mark.parametrize("query", ["dataset=file&file=upload-of-yesterday"])

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
+from urllib.parse import parse_qsl
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from geometry import clouds, se3
 from sims.kit.palette import before_film, before_tone_mapping
+from sims.kit.viewer import Look
 from sims.point_cloud import SIM, CloudParams, processes, solve, work
+from sims.point_cloud import colors as colors_to_send
+from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.files import read
 from sims.point_cloud.model import VIEWS, play
@@ -87,12 +92,12 @@ def test_the_selected_point_is_ringed_and_read_out(rig: Rig) -> None:
 
 
 def test_selecting_a_point_of_the_moved_scan_finds_it_where_it_is_drawn(rig: Rig) -> None:
-    params = show(rig, dataset="two-scans", process="register", step=3, selected=90_000)
+    params = show(rig, dataset="two-scans", process="register", step=3, selected=150_000)
     chosen = solve(params).selected
     assert chosen is not None
     first = len(rig.model.points("/cloud/points"))
     drawn = se3.apply(rig.model.world_pose("/marked/points"), rig.model.node("/marked/points").array("points"))
-    np.testing.assert_allclose(drawn[90_000 - first], chosen.position, atol=1e-5)
+    np.testing.assert_allclose(drawn[150_000 - first], chosen.position, atol=1e-5)
     np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], chosen.position, atol=1e-6)
 
 
@@ -109,7 +114,7 @@ def test_marked_and_other_points_are_all_points(rig: Rig) -> None:
 # ---- what others get wrong
 
 
-@pytest.mark.parametrize("color", ["height", "intensity", "rgb", "normals"])
+@pytest.mark.parametrize("color", ["height", "intensity", "rgb", "normals", "variation"])
 def test_points_have_more_than_one_colour(rig: Rig, color: str) -> None:
     show(rig, color=color, voxel_size=0.1)
     assert len(np.unique(colors(rig), axis=0)) > 20
@@ -129,14 +134,49 @@ def test_normals_point_towards_the_sensor(name: str) -> None:
     np.testing.assert_allclose(np.linalg.norm(vectors[defined], axis=1), 1.0)
 
 
-def test_lines_of_normals_start_at_points_and_go_along_them(rig: Rig) -> None:
-    show(rig, voxel_size=0.1, show_normals=True)
-    lines = rig.model.points("/cloud/normals").reshape(-1, 2, 3)
-    assert 100 < len(lines) <= 2_000
-    points = rig.model.points("/cloud/points")
-    assert np.isin(np.round(lines[:, 0], 5), np.round(points, 5)).all()
-    show(rig, voxel_size=0.1)
+@pytest.mark.parametrize(("dataset", "voxel"), [("room", 0.1), ("street", 0.0), ("two-scans", 0.0), ("statue", 0.5)])
+def test_arrows_of_normals_start_at_points_and_go_along_them(rig: Rig, dataset: str, voxel: float) -> None:
+    params = show(rig, dataset=dataset, voxel_size=voxel, show_normals=True)
+    arrows = rig.model.points("/cloud/normals")
+    thin = shown_points(params)
+    near = cKDTree(thin.points)
+    off, rows = near.query(arrows[:, 0])
+    np.testing.assert_allclose(off, 0.0, atol=1e-5)
+    assert len(set(rows)) == len(rows) > min(100, len(thin) // 2)
+    assert len(rows) <= 1_200, "more than a browser draws at ease"
+    vectors = arrows[:, 1] - arrows[:, 0]
+    lengths = np.linalg.norm(vectors, axis=1)
+    np.testing.assert_allclose(lengths, solve(params).drawn.arrow, rtol=1e-3)
+    np.testing.assert_allclose(vectors / lengths[:, None], work.normals(thin, 16)[rows], atol=1e-3)
+    assert rig.model.node("/cloud/normals").props["head_length"] < 0.5 * lengths.min()
+    show(rig, dataset=dataset, voxel_size=voxel)
     assert not rig.model.visible("/cloud/normals")
+
+
+def test_the_surface_variation_is_the_share_of_the_least_variance(rig: Rig) -> None:
+    params = show(rig, dataset="statue", color="variation", selected=4711, neighbors=20)
+    points = dataset("statue").points
+    near = points[cKDTree(points).query(points[4711], 20)[1]]
+    values = np.linalg.eigvalsh(np.cov(near.T))
+    chosen = solve(params).selected
+    assert chosen is not None
+    assert chosen.variation == pytest.approx(values[0] / values.sum(), abs=1e-6)
+    assert f"{chosen.variation:.4f}" in rig.model.html("s3-readouts")
+    tally = solve(params).drawn.tally
+    assert tally is not None
+    assert 0.0 == tally.low < tally.high <= 1.0 / 3.0
+    assert f"{tally.high:.2f}" in rig.model.html("s3-pane")
+    assert tally.counts.sum() == len(points)
+
+
+def test_what_has_no_surface_is_grey_and_not_counted() -> None:
+    line = Cloud("line", np.outer(np.arange(30.0), [1.0, 0.0, 0.0]))
+    assert np.isnan(work.local(line, 8).variation).all()
+    grey = work.painted(line, line, "variation", 8)
+    assert (grey == colors_to_send.of_rgb(np.array([colors_to_send.GREY], np.uint8))).all()
+    tally = work.tally(line, line, "variation", 8)
+    assert tally is not None
+    assert not tally.counts.any()
 
 
 def test_nothing_is_computed_again_for_size_or_colours(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -169,6 +209,23 @@ def test_another_cloud_is_looked_at_from_where_all_of_it_is_seen(rig: Rig) -> No
     np.testing.assert_allclose(rig.model.latest["SetCameraLookAtMessage"]["look_at"], view.look_at)
     show(rig, dataset="street", color="height")
     np.testing.assert_array_equal(rig.model.latest["SetCameraPositionMessage"]["position"], position)
+
+
+@pytest.mark.parametrize(
+    ("look", "share"), [(Look(), 610 / 600), (Look(width=760, narrow=True), 460 / 600), (Look(phone=True), 1.0)]
+)
+def test_another_cloud_fits_between_the_panels(look: Look, share: float) -> None:
+    """The page of 700 × 600 pixels may have told its size before the panels took theirs."""
+    with Rig(SIM, look=look) as rig:
+        show(rig, dataset="statue")
+        position, middle = (
+            np.array(rig.model.latest[f"SetCamera{what}Message"][name])
+            for what, name in (("Position", "position"), ("LookAt", "look_at"))
+        )
+    half = np.arctan(np.tan(0.35) * min(1.0, share) * (0.55 if look.phone else 1.0))
+    view = VIEWS["statue"]
+    assert np.linalg.norm(position - middle) * np.sin(half) == pytest.approx(view.radius)
+    np.testing.assert_allclose(middle, np.subtract(view.look_at, (0.0, 0.0, 0.75 * view.radius * look.phone)))
 
 
 # ---- picking
@@ -219,6 +276,42 @@ def test_a_process_starts_where_one_sees_it() -> None:
     assert CloudParams(dataset="two-scans").moved({"process": "register"}).step == 0
     back = CloudParams(process="register", step=30).moved({"process": "clusters"})
     assert back.step == 2
+
+
+@pytest.mark.parametrize("query", ["dataset=two-scans&process=register", "process=ground", "process=none"])
+def test_a_link_without_a_step_means_where_the_process_begins(query: str) -> None:
+    start = CloudParams.from_query(parse_qsl(query))
+    assert start.step == (0 if start.process == "register" else 2)
+    assert start == CloudParams().changed(dict(parse_qsl(query)))
+    assert "step" not in start.query()
+    for step in range(3):
+        there = start.changed({"step": step})
+        assert CloudParams.from_query(parse_qsl(there.query())) == there
+
+
+def test_the_slider_of_the_steps_ends_at_the_last_one(rig: Rig) -> None:
+    params = show(rig, dataset="two-scans", process="register", voxel_size=0.08)
+    found = solve(params).registration
+    assert found is not None
+    assert 3 < found.steps < processes.MOST_STEPS
+    assert rig.browser.control("step").props["max"] == found.steps
+    rig.browser.move("step", found.steps)
+    rig.settle()
+    assert "converged" in rig.model.html("s3-readouts")
+    rig.browser.press("step")
+    rig.settle()
+    assert rig.session.params.step == 0, "from the last step on to the first"  # type: ignore[attr-defined]
+    show(rig, dataset="two-scans", process="ground", voxel_size=0.08)
+    assert rig.browser.control("step").props["max"] == 2
+
+
+def test_a_link_beyond_the_last_step_shows_the_last(rig: Rig) -> None:
+    params = show(rig, dataset="two-scans", process="register", voxel_size=0.08, step=40)
+    found = solve(params).registration
+    assert found is not None
+    assert found.step == found.steps < 40
+    assert params.moved({"point_size": 3.0}).step == 40
+    assert params.moved({"step": 39}).step == found.steps
 
 
 @pytest.mark.parametrize("method", ["plane", "point"])
@@ -284,9 +377,13 @@ def test_the_statue_has_a_surface() -> None:
 
 
 def test_play_ends_at_the_last_step() -> None:
-    steps = list(play(CloudParams(dataset="two-scans", process="register")))
-    assert steps[0].changes == {"step": 0}
-    assert steps[-1].changes == {"step": 40}
+    params = CloudParams(dataset="two-scans", process="register", voxel_size=0.09)
+    steps = play(params)
+    assert next(steps).changes == {"step": 0}
+    found = solve(params).registration  # which the session does before it goes on
+    assert found is not None
+    assert list(steps)[-1].changes == {"step": found.steps}
+    assert [step.changes["step"] for step in play(CloudParams(process="ground"))] == [0, 0, 1, 1, 2, 2]
 
 
 # ---- files

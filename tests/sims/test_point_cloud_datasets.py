@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
 from geometry import clouds, se3
+from sims.point_cloud import SIM
 from sims.point_cloud.datasets import DATASETS, RINGS, dataset
 
 
@@ -27,6 +30,16 @@ def test_each_has_points_and_what_belongs_to_them(name: str) -> None:
 @pytest.mark.parametrize("name", DATASETS)
 def test_each_is_the_same_every_time(name: str) -> None:
     np.testing.assert_array_equal(DATASETS[name]().points, dataset(name).points)
+
+
+def test_each_is_made_once_however_many_ask() -> None:
+    with ThreadPoolExecutor(4) as pool:
+        clouds = list(pool.map(dataset, ["room"] * 4))
+    assert len(set(map(id, clouds))) == 1
+
+
+def test_all_are_made_ahead() -> None:
+    assert [piece() for piece in SIM.ahead] == [dataset(name) for name in DATASETS]
 
 
 def test_the_room_stands_on_its_floor() -> None:
