@@ -15,14 +15,17 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks import clouds, opening
+from benchmarks import cloud, clouds, opening
 from benchmarks.process import CORES, resident
 from benchmarks.servers import Plain, Sim3
+from geometry.clouds import voxels
+from sims.point_cloud.datasets import dataset
 
 WAYS: tuple[type[Sim3 | Plain], ...] = (Sim3, Plain)
 SATURATED, LATE = 0.8, 5.0
 """Share of its core, and milliseconds, from which on the load generator may be what is slow."""
 FORGOTTEN_AFTER = 62.0
+CLOUD = "room"
 """Seconds after which the server forgets a session that nobody looks at."""
 Rows = list[dict[str, Any]]
 
@@ -30,12 +33,14 @@ Rows = list[dict[str, Any]]
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer learners and seconds, less certain numbers")
-    parser.add_argument("--only", choices=("learners", "sessions", "opening", "clouds"), help="one part")
+    parser.add_argument("--only", choices=("learners", "beside", "sessions", "opening", "clouds"), help="one part")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers there too")
     args = parser.parse_args()
     if len(CORES) < 2:
         raise SystemExit("The benchmark needs Linux and two cores: one for the server, one for the load.")
-    parts = {"learners": learners, "sessions": sessions, "opening": openings, "clouds": clouds.measure}
+    parts = {
+        "learners": learners, "beside": beside, "sessions": sessions, "opening": openings, "clouds": clouds.measure,
+    }  # fmt: skip
     print(f"{len(CORES)} cores, load average {os.getloadavg()[0]:.1f} before the start")
     results = {name: part(args.quick) for name, part in parts.items() if args.only in (None, name)}
     if args.json:
@@ -81,6 +86,38 @@ def learners_cells(row: dict[str, Any]) -> Iterator[str]:
     yield f"{row['server_share']:.0%}"
     yield f"{row['load_share']:.0%}"
     yield f"{row['rss_before_mb']:.0f} {row['rss_after_mb']:.0f}"
+
+
+def beside(quick: bool) -> Rows:
+    """Learners who drag while another one has a point cloud registered."""
+    print("\n30 learners who each drag a slider at 20 Hz, while one more has 200 thousand points registered")
+    print("Milliseconds, p50/p95/p99, as above; seconds of a registration, the median")
+    table = Table("way|drawn|   own state  |      age     |lost last|server|load|registered|seconds each")
+    with Sim3() as server:
+        row: dict[str, Any] = {"way": server.way}
+        options = {"seconds": 2 if quick else 8, "cloud": server.page(cloud.SLUG)}
+        row.update(server.load("beside", 30, **options))
+        sizes = [[round(start + 0.005 * k, 3) for k in range(20 if quick else 60)] for start in (0.322, 0.02)]
+        counts = [[(size, len(voxels(dataset(CLOUD).points, size).points)) for size in drag] for drag in sizes]
+        row["voxels"] = server.load("voxels", 0, counts=counts, cloud=server.page(cloud.SLUG))
+    quiet = {name.removeprefix("quiet_"): value for name, value in row.items() if name.startswith("quiet_")}
+    table.add([*beside_cells("quiet", quiet), "", ""])
+    table.add([*beside_cells("registering", row), f"{row['registered']}", f"{row['seconds_each']:.2f}"])
+    ages = "/".join(f"{row['voxels'][f'age_p{level}_ms']:.0f}" for level in (50, 95, 99))
+    table.say(
+        f"    a voxel slider at 20 Hz on {len(dataset(CLOUD))} points: {ages} ms until a cloud or a later one came"
+    )
+    return [row]
+
+
+def beside_cells(way: str, row: dict[str, Any]) -> Iterator[str]:
+    yield way
+    yield f"{row['drawn'] / row['sent']:.0%}"
+    for name in ("delay", "age"):
+        yield "/".join(f"{row[f'{name}_p{level}_ms']:.0f}" for level in (50, 95, 99))
+    yield f"{row['lost_last']}"
+    yield f"{row['server_share']:.0%}"
+    yield f"{row['load_share']:.0%}"
 
 
 def sessions(quick: bool) -> Rows:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import uvloop
 
+from benchmarks.cloud import Cloud
 from benchmarks.learner import FIRST, Learner
 from benchmarks.process import cpu_seconds, resident
 
@@ -27,11 +28,40 @@ Result = dict[str, float]
 
 async def drag(job: Job) -> Result:
     """All learners drag at once for some seconds."""
-    pid, start = job["pid"], FIRST + WARM_UP
+    learners = await _warmed_up(job)
+    result = await _dragged(job, learners, FIRST + WARM_UP)
+    await _close(learners)
+    return result
+
+
+async def beside(job: Job) -> Result:
+    """All learners drag, first undisturbed and then while one more has a point cloud registered again and again."""
+    learners = await _warmed_up(job)
+    cloud = Cloud(job["host"], job["cloud"], job["camera"])
+    await cloud.open()
+    first = await cloud.register()
+    quiet = await _dragged(job, learners, FIRST + WARM_UP)
+    registering = asyncio.create_task(cloud.keep_registering())
+    busy = await _dragged(job, learners, FIRST + WARM_UP + int(job["seconds"] * RATE))
+    registering.cancel()
+    await asyncio.gather(registering, return_exceptions=True)
+    await cloud.close()
+    await _close(learners)
+    kept = {f"quiet_{name}": value for name, value in quiet.items()}
+    took = float(np.median(cloud.took)) if cloud.took else float("nan")
+    return {**busy, **kept, "registered": len(cloud.took), "seconds_each": took, "seconds_first": first}
+
+
+async def _warmed_up(job: Job) -> list[Learner]:
     learners = [Learner(job["host"], path, job["camera"]) for path in job["paths"]]
     await _open(learners)
-    await _drag_all(learners, range(FIRST, start))
+    await _drag_all(learners, range(FIRST, FIRST + WARM_UP))
     await _wait(lambda: all(learner.arrived for learner in learners), LAST_WITHIN)
+    return learners
+
+
+async def _dragged(job: Job, learners: list[Learner], start: int) -> Result:
+    pid = job["pid"]
     memory, cpu, own, begin = resident(pid), cpu_seconds(pid), _own_cpu(), time.perf_counter()
     await _drag_all(learners, range(start, start + int(job["seconds"] * RATE)))
     took, cpu_dragging = time.perf_counter() - begin, cpu_seconds(pid) - cpu
@@ -41,7 +71,7 @@ async def drag(job: Job) -> Result:
     sent = sum(len(x.sent) for x in learners)
     drawn = sum(len(x.delays) for x in learners)
     unanswered = [now - at for x in learners for at in x.sent[len(x.ages) :]]
-    result = {
+    return {
         "learners": len(learners), "sent": sent, "drawn": drawn, "unanswered": len(unanswered),
         "lost_last": sum(not x.arrived for x in learners), "backwards": sum(x.backwards for x in learners),
         "cpu_ms_per_update": 1e3 * cpu / sent, "cpu_ms_per_drawn": 1e3 * cpu / max(drawn, 1),
@@ -51,8 +81,17 @@ async def drag(job: Job) -> Result:
         **_percentiles("age", [*(a for x in learners for a in x.ages), *unanswered]),
         **_percentiles("late", [s for x in learners for s in x.late]),
     }  # fmt: skip
-    await _close(learners)
-    return result
+
+
+async def voxels(job: Job) -> Result:
+    """One learner drags the voxel slider, once to warm up, and then for good."""
+    cloud = Cloud(job["host"], job["cloud"], job["camera"], looks=True)
+    await cloud.open()
+    ages: list[float] = []
+    for counts in job["counts"]:
+        ages = await cloud.drag(dict(counts), RATE)
+    await cloud.close()
+    return {"clouds": len(ages), **_percentiles("age", ages)}
 
 
 async def idle(job: Job) -> Result:
@@ -129,7 +168,7 @@ def _percentiles(name: str, seconds: list[float]) -> Result:
     return {f"{name}_p{level}_ms": 1e3 * float(v) for level, v in zip(levels, found, strict=True)}
 
 
-JOBS = {"drag": drag, "idle": idle, "churn": churn}
+JOBS = {"drag": drag, "beside": beside, "voxels": voxels, "idle": idle, "churn": churn}
 
 
 def main() -> None:

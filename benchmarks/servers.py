@@ -89,8 +89,8 @@ class Sim3(Server):
 
     way, module = "sim3", "app"
 
-    def page(self) -> str:
-        return urlsplit(self.get(f"/sims/{SLUG}/embed").headers["location"]).path
+    def page(self, slug: str = SLUG) -> str:
+        return urlsplit(self.get(f"/sims/{slug}/embed").headers["location"]).path
 
     def sessions(self) -> int:
         """How many sessions it keeps."""
