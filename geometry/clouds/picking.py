@@ -9,7 +9,7 @@ from ..arrays import Array, norm
 from ..errors import GeometryError, as_array, as_finite_array, as_number
 from .points import Indices
 
-_ROWS = 32768  # at once, so that they stay in the cache
+_ROWS = 16384  # at once, so that they stay in the cache, and their memory is used again
 _DEPTH = 4.0
 """Cone widths behind the nearest point, up to which points count as the same surface."""
 
@@ -51,8 +51,12 @@ def pick(points: npt.ArrayLike, origin: npt.ArrayLike, direction: npt.ArrayLike,
 @np.errstate(invalid="ignore", over="ignore")
 def _inside(cloud: Array, first: int, frame: Array, start: Array, cone: float) -> tuple[Indices, Array, Array]:
     """Of some rows, those in the cone, how far along the ray, and the square of how far from it."""
-    along, right, up = frame @ (cloud[first : first + _ROWS] - start).T
-    off = right * right + up * up
+    across = frame @ cloud[first : first + _ROWS].T
+    across -= (frame @ start)[:, None]
+    along, right, off = across
+    off *= off
+    right *= right
+    off += right
     inside = np.flatnonzero((along > 0.0) & (off <= (cone * along) ** 2))
     return inside + first, along[inside], off[inside]
 

@@ -251,7 +251,7 @@ def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim, tiny: float) -
         start = sim.params().changed(base)
         for name in NUMERIC[sim.slug]:
             value = getattr(start, name)
-            spoiled = [tiny] if isinstance(value, float) else []
+            spoiled: list[Any] = [tiny] if isinstance(value, float) else []
             if isinstance(value, tuple):
                 spoiled = [(*value[:k], tiny, *value[k + 1 :]) for k in range(len(value))]
             for one in spoiled:
