@@ -25,8 +25,9 @@ WAYS: tuple[type[Sim3 | Plain], ...] = (Sim3, Plain)
 SATURATED, LATE = 0.8, 5.0
 """Share of its core, and milliseconds, from which on the load generator may be what is slow."""
 FORGOTTEN_AFTER = 62.0
-CLOUD = "room"
 """Seconds after which the server forgets a session that nobody looks at."""
+CLOUD = "room"
+"""The dataset whose voxel slider is dragged."""
 Rows = list[dict[str, Any]]
 
 
