@@ -78,15 +78,29 @@ def learners(quick: bool) -> Rows:
 
 def learners_cells(row: dict[str, Any]) -> Iterator[str]:
     yield f"{row['learners']} {row['way']}"
-    yield f"{row['drawn'] / row['sent']:.0%}"
-    for name in ("delay", "age"):
-        yield "/".join(f"{row[f'{name}_p{level}_ms']:.0f}" for level in (50, 95, 99))
-    yield f"{row['lost_last']}"
+    yield from seen_cells(row)
     yield f"{row['cpu_ms_per_update']:.2f}"
     yield f"{row['cpu_ms_per_drawn']:.2f}"
+    yield from share_cells(row)
+    yield f"{row['rss_before_mb']:.0f} {row['rss_after_mb']:.0f}"
+
+
+def seen_cells(row: dict[str, Any]) -> Iterator[str]:
+    """How much of what was dragged came, and when."""
+    yield f"{row['drawn'] / row['sent']:.0%}"
+    yield percentiles(row, "delay")
+    yield percentiles(row, "age")
+    yield f"{row['lost_last']}"
+
+
+def share_cells(row: dict[str, Any]) -> Iterator[str]:
+    """How much of their cores the server and the load generator used."""
     yield f"{row['server_share']:.0%}"
     yield f"{row['load_share']:.0%}"
-    yield f"{row['rss_before_mb']:.0f} {row['rss_after_mb']:.0f}"
+
+
+def percentiles(row: dict[str, Any], name: str) -> str:
+    return "/".join(f"{row[f'{name}_p{level}_ms']:.0f}" for level in (50, 95, 99))
 
 
 def beside(quick: bool) -> Rows:
@@ -102,23 +116,12 @@ def beside(quick: bool) -> Rows:
         counts = [[(size, len(voxels(dataset(CLOUD).points, size).points)) for size in drag] for drag in sizes]
         row["voxels"] = server.load("voxels", 0, counts=counts, cloud=server.page(cloud.SLUG))
     quiet = {name.removeprefix("quiet_"): value for name, value in row.items() if name.startswith("quiet_")}
-    table.add([*beside_cells("quiet", quiet), "", ""])
-    table.add([*beside_cells("registering", row), f"{row['registered']}", f"{row['seconds_each']:.2f}"])
-    ages = "/".join(f"{row['voxels'][f'age_p{level}_ms']:.0f}" for level in (50, 95, 99))
-    table.say(
-        f"    a voxel slider at 20 Hz on {len(dataset(CLOUD))} points: {ages} ms until a cloud or a later one came"
-    )
+    table.add(["quiet", *seen_cells(quiet), *share_cells(quiet), "", ""])
+    each = [f"{row['registered']}", f"{row['seconds_each']:.2f}"]
+    table.add(["registering", *seen_cells(row), *share_cells(row), *each])
+    points, ages = len(dataset(CLOUD)), percentiles(row["voxels"], "age")
+    table.say(f"    a voxel slider at 20 Hz on {points} points: {ages} ms until a cloud or a later one came")
     return [row]
-
-
-def beside_cells(way: str, row: dict[str, Any]) -> Iterator[str]:
-    yield way
-    yield f"{row['drawn'] / row['sent']:.0%}"
-    for name in ("delay", "age"):
-        yield "/".join(f"{row[f'{name}_p{level}_ms']:.0f}" for level in (50, 95, 99))
-    yield f"{row['lost_last']}"
-    yield f"{row['server_share']:.0%}"
-    yield f"{row['load_share']:.0%}"
 
 
 def sessions(quick: bool) -> Rows:
