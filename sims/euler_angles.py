@@ -274,8 +274,8 @@ class Arc:
         self.end = stage.lines(f"{name}/end", [(0, 0, 0), (radius, 0, 0)], axis, width=1.5)
         self.axis = stage.lines(f"{name}/axis", [(0, 0, -1.7), (0, 0, 1.7)], axis, width=5.0)
         self.axis.show(False)
-        anchors = {"0": "top-center", "1": "bottom-center", "2": "center-center"}  # apart, where arcs meet
-        self.label = stage.label(f"{name}/label", "", anchor=anchors[name[-1]])
+        # the outermost label hangs lower, clear of the next one where the two arcs meet
+        self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
         self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
         self.locks = locks
         self.shown: tuple[Turn, bool] | None = None
