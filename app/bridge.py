@@ -33,8 +33,6 @@ log = logging.getLogger("sim3")
 LARGEST_MESSAGE = 16 * 1024
 MESSAGES_PER_SECOND = 200
 HELLO_WITHIN = 2.0
-NARROW = 900
-PHONE = 576
 Number = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
@@ -237,8 +235,7 @@ class Bridge:
             # A page whose first message is late may still bring its state.
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-            width = hello.width
-            look = Look(hello.dark, width < NARROW, hello.controls, visit.watching, width <= PHONE, width)
+            look = Look(hello.dark, hello.controls, visit.watching, hello.width)
             link.viewer = visit.viewer = Viewer(visit.sim, client, session, look, session.params)
             session.join(link.viewer)
         except Full:

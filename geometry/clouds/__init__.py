@@ -12,7 +12,7 @@ from .outliers import Outliers, outliers
 from .picking import Pick, pick
 from .planes import Plane, fit_plane, ransac_plane
 from .points import Indices, Progress, bounds
-from .registration import SETTLED, Registration, Step, Target, icp, register
+from .registration import SETTLED, Registration, Step, Target, certainty, icp, register
 from .surface import Surface, alpha_shape, mesh_area, mesh_volume
 from .voxels import Voxels, voxels
 
@@ -34,6 +34,7 @@ __all__ = [
     "Voxels",
     "alpha_shape",
     "bounds",
+    "certainty",
     "clusters",
     "fit_plane",
     "icp",

@@ -193,10 +193,11 @@ def register(
         T = steps[-1].T_target_source
     progress(1.0)
     converged = len(steps) - first > 1 and _same(steps[-2], steps[-1], settled)
-    return Registration(T, tuple(steps), converged, _certainty(goal, p, steps[-1], method))
+    return Registration(T, tuple(steps), converged, certainty(goal, p, steps[-1], method))
 
 
-def _certainty(goal: Target, p: Array, last: Step, method: str) -> Observability | None:
+def certainty(goal: Target, p: Array, last: Step, method: str) -> Observability | None:
+    """Return how well the pairs of a step of `icp` fix the motion of source points p (N, 3); None without pairs."""
     paired = np.flatnonzero(last.target >= 0)
     if not len(paired):
         return None

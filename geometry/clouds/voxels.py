@@ -37,6 +37,13 @@ class Voxels:
         """Number (N,) of each point's cell: made when it is asked for."""
         return self._keys if self._number is None else self._number[self._keys]
 
+    @cached_property
+    def first(self) -> Indices:
+        """Row (M,) of each cell's first point."""
+        first = np.empty(len(self.counts), np.intp)
+        first[self.labels[::-1]] = np.arange(len(self.labels) - 1, -1, -1)  # of several the last one stays
+        return first
+
     def mean(self, values: npt.ArrayLike) -> Array:
         """Return the means (M, ...) in each cell of what belongs to the points, (N, ...): colours, intensities."""
         array = np.asarray(values, dtype=np.float64)

@@ -21,6 +21,8 @@ from sims.kit.stage import Dragged, Stage
 from sims.kit.viser_internals import control_id, received, set_property, set_value
 
 ACCENT = (11, 95, 215)
+NARROW, PHONE = 900, 576
+"""Pixels of a page's width below, and up to, which there is less room."""
 PICTURES = 330
 """Pixels that the panel of the pictures is wide."""
 OTHER = "another"
@@ -44,12 +46,18 @@ class Look:
     """What the viewer's page said of itself."""
 
     dark: bool = False
-    narrow: bool = False
     controls: bool = True
     watching: bool = False
-    phone: bool = False
     width: int = 1280
     """Of the page, in pixels."""
+
+    @property
+    def narrow(self) -> bool:
+        return self.width < NARROW
+
+    @property
+    def phone(self) -> bool:
+        return self.width <= PHONE
 
 
 @dataclass

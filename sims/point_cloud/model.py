@@ -129,10 +129,14 @@ class CloudParams(Params):
         return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
 
     @property
+    def facing(self) -> int:
+        """Neighbours that a registration's normals follow from: to points it needs none, and they change nothing."""
+        return self.neighbors if self.method == "plane" else 16
+
+    @property
     def course(self) -> tuple[Any, ...]:
         """All that a registration follows from."""
-        neighbors = self.neighbors if self.method == "plane" else 16
-        return self.dataset, self.file, self.voxel_size, neighbors, self.method, self.distance
+        return self.dataset, self.file, self.voxel_size, self.facing, self.method, self.distance
 
     @property
     def last_step(self) -> int:

@@ -176,12 +176,8 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
                 steps.append(step)
             converged = k < left
     steps = steps[: MOST_STEPS + 1]
-    paired = steps[-1].target >= 0
-    unobservable = np.empty((0, 6))
-    if paired.any():
-        moved = se3.apply(steps[-1].T_target_source, source[paired])
-        sides = target.normals[steps[-1].target[paired]] if method == "plane" else None
-        unobservable = clouds.observability(moved, sides).unobservable()
+    known = clouds.certainty(target, source, steps[-1], method)
+    unobservable = np.empty((0, 6)) if known is None else known.unobservable()
     return Course(
         tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1]
     )

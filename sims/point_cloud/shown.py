@@ -139,9 +139,7 @@ def _one_a_cell(thin: Cloud, cell: float) -> Indices:
     chosen = []
     for rows in parts(thin):
         cells = clouds.voxels(thin.points[rows], cell)
-        first = np.empty(len(cells.counts), np.intp)
-        first[cells.labels[::-1]] = rows[::-1]
-        chosen.append(first[cells.counts >= FEW * len(rows) / max(len(first), 1)])
+        chosen.append(rows[cells.first[cells.counts >= FEW * len(rows) / max(len(cells.counts), 1)]])
     return np.concatenate(chosen)
 
 

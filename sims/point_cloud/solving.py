@@ -116,7 +116,7 @@ def _outliers(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
 
 
 def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
-    way = processes.course(cloud, thin, p.method, p.course[3], p.distance)
+    way = processes.course(cloud, thin, p.method, p.facing, p.distance)
     if way is None:
         return _none(p, cloud, thin)
     processes.remember(p.course, way)

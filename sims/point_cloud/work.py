@@ -44,9 +44,7 @@ def thinned(cloud: Cloud, size: float) -> Cloud:
 
 def _thinned(cloud: Cloud, size: float) -> Cloud:
     cells = clouds.voxels(cloud.points, size)
-    first = np.empty(len(cells.counts), np.intp)
-    first[cells.labels[::-1]] = np.arange(len(cloud) - 1, -1, -1)  # of several values for a cell the last one stays
-    return cloud.only(first).with_means(
+    return cloud.only(cells.first).with_means(
         points=cells.points,
         colors=None if cloud.colors is None else np.rint(cells.mean(cloud.colors)).astype(np.uint8),
         intensity=None if cloud.intensity is None else cells.mean(cloud.intensity),

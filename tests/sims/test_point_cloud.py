@@ -211,9 +211,7 @@ def test_another_cloud_is_looked_at_from_where_all_of_it_is_seen(rig: Rig) -> No
     np.testing.assert_array_equal(rig.model.latest["SetCameraPositionMessage"]["position"], position)
 
 
-@pytest.mark.parametrize(
-    ("look", "share"), [(Look(), 610 / 600), (Look(width=760, narrow=True), 460 / 600), (Look(phone=True), 1.0)]
-)
+@pytest.mark.parametrize(("look", "share"), [(Look(), 610 / 600), (Look(width=760), 460 / 600), (Look(width=390), 1.0)])
 def test_another_cloud_fits_between_the_panels(look: Look, share: float) -> None:
     """The page of 700 × 600 pixels may have told its size before the panels took theirs."""
     with Rig(SIM, look=look) as rig:

@@ -235,7 +235,7 @@ def test_without_controls_there_is_the_scene_alone(sim: AnySim) -> None:
 @each_sim
 def test_on_a_phone_pictures_are_where_they_are_needed(sim: AnySim) -> None:
     """In one column: first of all where something in them is held, else between what is set and the read-outs."""
-    with Rig(sim, look=Look(phone=True, narrow=True)) as rig:
+    with Rig(sim, look=Look(width=390)) as rig:
         paths = [rig.model.path(element)[0] for element in rig.model.ordered() if rig.model.path(element)]
         order = [folder for folder in dict.fromkeys(paths) if folder in ("Pictures", "Actions", "Read-outs")]
         held = sim.panes is not None and "data-handle" in rig.model.html("s3-panes")

@@ -46,6 +46,12 @@ def enough(claimed: int, size: int, there: int, what: str = "points of {} bytes"
         )
 
 
+def fits(unpacked: int, largest: int) -> None:
+    """Raise CloudFileError if a compressed file would become too large."""
+    if unpacked > largest:
+        raise CloudFileError(f"Unpacked it is {unpacked / 1e6:,.0f} MB; at most {largest / 1e6:,.0f} MB are taken.")
+
+
 def colors_of(columns: Columns) -> Colors | None:
     """Colours (N, 3) as 0–255, from that, from 0–65535 or from 0–1."""
     if not {"red", "green", "blue"} <= set(columns):

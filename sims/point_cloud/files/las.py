@@ -9,7 +9,7 @@ import struct
 import laspy
 import numpy as np
 
-from sims.point_cloud.files.columns import CloudFileError, Columns, enough
+from sims.point_cloud.files.columns import CloudFileError, Columns, enough, fits
 
 logging.getLogger("laspy").setLevel(logging.CRITICAL)  # whoever brought the file is told, not the administrator
 _HEADER, _RECORD = 227, 54  # bytes, of the oldest header and of the smallest variable length record
@@ -44,10 +44,7 @@ def _check(header: laspy.LasHeader, there: int, largest: int) -> None:
     if not header.are_points_compressed:
         enough(header.point_count, size, there - header.offset_to_point_data)
     enough(header.point_count, 0, there)
-    if header.point_count * size > largest:
-        raise CloudFileError(
-            f"Unpacked it is {header.point_count * size / 1e6:,.0f} MB; at most {largest / 1e6:,.0f} MB are taken."
-        )
+    fits(header.point_count * size, largest)
 
 
 def _columns(points: laspy.ScaleAwarePointRecord) -> dict[str, np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from pypcd4.pypcd4 import MetaData, PointCloud
 
-from sims.point_cloud.files.columns import CloudFileError, Columns, enough, named
+from sims.point_cloud.files.columns import CloudFileError, Columns, enough, fits, named
 
 _LONGEST_HEADER = 8192
 
@@ -55,8 +55,7 @@ def _check_compressed(data: bytes, start: int, whole: int, largest: int) -> None
     enough(packed, 1, len(data) - start - 8, "bytes of points")
     if unpacked != whole:
         raise CloudFileError(f"Its points need {whole:,} bytes, and it holds {unpacked:,}.")
-    if unpacked > largest:
-        raise CloudFileError(f"Unpacked it is {unpacked / 1e6:,.0f} MB; at most {largest / 1e6:,.0f} MB are taken.")
+    fits(unpacked, largest)
 
 
 def _decoded(data: bytes) -> PointCloud:
