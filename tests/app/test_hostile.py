@@ -290,7 +290,8 @@ def test_a_channel_that_does_not_greet_is_closed(local: Local, learner: Page, fi
     before, rooms = local.refusals["channel"], local.sessions
     key = new_key()
     channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
-    channel.send(first)
+    with suppress(ConnectionClosed):  # the server may hang up in the middle of what is too long
+        channel.send(first)
     assert closed(channel) in (1008, 1009)
     if len(first) < 1 << 20:
         local.refused("channel", before)
@@ -557,9 +558,10 @@ def alive(kind: type) -> int:
 def test_pages_that_went_leave_nothing_behind(local: Local, learner: Page) -> None:
     learner.settle()
     before = {kind: alive(kind) for kind in (Viewer, Wire, bridge.Visit, bridge.Link)}
-    for _ in range(10):
+    for _ in range(20):
         Page(local.url).close()
-    wait_for(lambda: before == {kind: alive(kind) for kind in before}, "what the pages had to be freed")
+    # What an earlier test's page had may still have been there before, and be freed meanwhile.
+    wait_for(lambda: all(alive(kind) <= count for kind, count in before.items()), "what the pages had to be freed")
     assert not [v for v in local.app.state.bridge._visits.values() if v.sockets < 1]
 
 
