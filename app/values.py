@@ -1,4 +1,4 @@
-"""Parameters as JSON: read strictly, and what is wrong with them, in words and as fields.
+"""Parameters as JSON: read strictly, and what is wrong with them.
 
 A link spells its values as text; JSON has types, so there a number is a number: not text, and not true or false.
 """
@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from geometry import GeometryError
 from sims.kit.params import Complaint, Params, allowed_values, clipped, disagreeing, extra
 
 P = TypeVar("P", bound=Params)
@@ -80,21 +79,3 @@ def shown(value: Any) -> str:
         return clipped(json.dumps(value, default=str))
     except (ValueError, RecursionError):
         return "something nested too deeply"
-
-
-def error_message(model: type[Params], error: Exception, given: Mapping[str, Any]) -> dict[str, Any]:
-    """An error as the message that pages get: in words, and for each parameter that is wrong as fields."""
-    if isinstance(error, ValidationError):
-        found = [complaint for _, complaint in complaints(model, given, error)]
-    elif isinstance(error, GeometryError) and error.argument in model.model_fields:
-        found = [Complaint(error.argument, clipped(str(error.received)), error.allowed)]
-    else:
-        return refused(str(error))
-    words = [f"{name}: got {received}, allowed: {allowed}" for name, received, allowed in found]
-    return refused("; ".join(words), *found)
-
-
-def refused(words: str, *found: Complaint) -> dict[str, Any]:
-    """An error message in some words."""
-    fields = [dict(zip(("parameter", "received", "allowed"), complaint, strict=True)) for complaint in found]
-    return {"type": "error", "message": clipped(words, 400), "errors": fields}

@@ -19,7 +19,7 @@ import pytest
 from pydantic import ValidationError
 
 from app import motion, session
-from app.session import Full, Session, Sessions, new_key, refusal, room_of
+from app.session import Full, Session, Sessions, new_key, room_of
 from app.workers import workers
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, begins, goes_on
@@ -240,9 +240,8 @@ def test_what_comes_after_an_impossible_state_is_not_lost() -> None:
 def test_a_message_with_bad_values_is_refused_whole(changes: dict[str, Any]) -> None:
     async def test() -> None:
         room = Room()
-        with pytest.raises(ValidationError) as caught:
+        with pytest.raises(ValidationError):
             room.session.change({"kind": "blue", **changes}, live=False)
-        assert next(iter(changes)) in refusal(caught.value)
         await room.drawn()
         assert room.session.params == ToyParams()
 
