@@ -63,7 +63,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions, largest)
-    answers = add_api(app)
+    app.state.answers = answers = add_api(app)
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 
