@@ -309,7 +309,7 @@ class Bridge:
             self.refusals["watching"] += 1
             return
         if isinstance(message, Handle):
-            commands.drag(message.name, (message.x, message.y))
+            commands.hold(message.name, (message.x, message.y))
         elif isinstance(message, Act):
             commands.act(message.name)
         elif isinstance(message, Point):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from app.session import Session
-from app.trouble import error_message, refused
+from app.trouble import Unknown, error_message, refused
 from app.values import shown, strict
 from sims.kit.params import Complaint
 
@@ -56,6 +56,16 @@ class Commands:
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to."""
         self.attempt(self._session.drag, name, place)
+
+    def hold(self, name: str, pixel: tuple[float, float]) -> None:
+        """Take the place where a handle in a picture was dragged to; those of the scene have names with a slash."""
+        self.attempt(self._hold, name, pixel)
+
+    def _hold(self, name: str, pixel: tuple[float, float]) -> None:
+        if name.startswith("/"):
+            pictured = [known for known in self._session.sim.handles if not known.startswith("/")]
+            raise Unknown("handle in a picture", name, pictured)
+        self._session.drag(name, pixel)
 
     def act(self, name: str) -> None:
         """Press a button."""
