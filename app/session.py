@@ -25,6 +25,7 @@ from pydantic import ValidationError
 from app.motion import play
 from app.workers import workers
 from geometry import GeometryError
+from sims.kit import child
 from sims.kit.params import Params, clipped
 from sims.kit.progress import Superseded, Work, at_work
 from sims.kit.sim import Sim, Step
@@ -392,7 +393,8 @@ class Sessions:
                 del self._by_room[key]
 
     def close(self) -> None:
-        """End the pools."""
+        """End the pools, and the processes that read files."""
+        child.stop()
         self.aside.shutdown(wait=False, cancel_futures=True)
         self._ahead.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)
