@@ -125,8 +125,9 @@ def begin(
 
 def result(future: Future[Values]) -> Values:
     """Wait for what was begun, as long as the session that asks wants it. Raises what `read` does."""
-    while not wait([future], WAITS).done:
+    while not future.done():
         goes_on()
+        wait([future], WAITS)
     try:
         return future.result()
     except CancelledError:
