@@ -25,6 +25,7 @@ from pydantic import ValidationError
 from app.motion import gliding, play
 from app.trouble import Unknown, error_message
 from app.workers import workers
+from sims.kit import child
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, Work, at_work
 from sims.kit.sim import Sim, Step, jsonable
@@ -431,7 +432,8 @@ class Sessions:
                 del self._by_room[key]
 
     def close(self) -> None:
-        """End the pools."""
+        """End the pools, and the processes that read files."""
+        child.stop()
         self.aside.shutdown(wait=False, cancel_futures=True)
         self._ahead.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)

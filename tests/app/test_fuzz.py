@@ -252,7 +252,6 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         assert not neighbour.is_alive()
         if neighbour.failure is not None:
             raise neighbour.failure
-        print(visits, seen, len(neighbour.took), np.percentile(neighbour.took, [50, 95, 100]), warm, server.memory())
         assert visits > 300
         assert seen[b"101"] > visits
         assert seen[b"403"] + seen[b"400"] > 0, "handshakes that are refused"
