@@ -6,12 +6,12 @@ a name is followed from the world to its pixel.
 
 from __future__ import annotations
 
-from sims.camera import hands
-from sims.camera.model import CameraParams, CameraSolution
-from sims.camera.picture import panes
+from sims.camera import actions
+from sims.camera.panes import panes
+from sims.camera.params import CameraParams
+from sims.camera.readouts import describe, readouts
 from sims.camera.scene import CameraScene
-from sims.camera.solve import solve
-from sims.camera.words import describe, readouts
+from sims.camera.solution import CameraSolution, solve
 from sims.kit.sim import Action, Objective, Sim, View
 
 __all__ = ["SIM", "CameraParams", "CameraSolution", "solve"]
@@ -36,11 +36,11 @@ SIM = Sim(
     actions=(
         Action(
             "dolly-zoom", "Dolly zoom", "Move and zoom together, so that the house stays as tall in the picture",
-            hands.dolly_zoom,
+            actions.dolly_zoom,
         ),
-        Action("look", "Look at the subject", "Turn the camera to the middle of the house", hands.look),
+        Action("look", "Look at the subject", "Turn the camera to the middle of the house", actions.look),
     ),
-    handles={"/eye": hands.hold_eye, "/look": hands.hold_look, "principal": hands.hold_principal},
+    handles={"/eye": actions.hold_eye, "/look": actions.hold_look, "principal": actions.hold_principal},
     states={
         "orthographic": {"projection": "orthographic"},
         "weak perspective": {"projection": "weak", "selected": "far-post"},

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.arrays import Array
-from sims.camera.model import CameraParams, CameraSolution, Frustum
+from sims.camera.params import CameraParams
+from sims.camera.solution import CameraSolution, Frustum
 from sims.camera.world import BY_ROLE, PLACES, ROLES, TITLES, WIRES, Place
 from sims.kit.camera_figure import CameraFigure
 from sims.kit.stage import Stage

@@ -66,7 +66,6 @@ _EAVES = [street(a, b, WALL) for a, b in _RING]
 _RIDGE = [street(0.5 * (LEFT + RIGHT), b, ROOF) for b in (FRONT, BACK)]
 _CUBES = {name: _cube(*cube) for name, cube in CUBES.items()}
 _CORNERS = ("near-left", "near-right", "far-right", "far-left")
-
 PLACES: dict[str, Place] = {
     "near-post": street(BESIDE, POSTS[1], TALL),
     "near-foot": street(BESIDE, POSTS[1], 0.0),

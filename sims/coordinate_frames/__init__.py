@@ -5,10 +5,11 @@ The world is a car on a floor: right, forward, up. It never moves; a convention 
 
 from __future__ import annotations
 
-from sims.coordinate_frames import model
-from sims.coordinate_frames.model import FramesParams, FramesSolution, solve
+from sims.coordinate_frames import actions
+from sims.coordinate_frames.params import GRIDS, FramesParams
+from sims.coordinate_frames.readouts import describe, readouts
 from sims.coordinate_frames.scene import FramesScene
-from sims.coordinate_frames.words import describe, readouts
+from sims.coordinate_frames.solution import FramesSolution, solve
 from sims.kit.sim import Action, Objective, Sim, View
 
 __all__ = ["SIM", "FramesParams", "FramesSolution", "solve"]
@@ -30,10 +31,10 @@ SIM = Sim(
     describe=describe,
     view=View((-2.7, -3.5, 2.15), (0.0, 0.0, 0.0), 1.85),
     actions=(
-        Action("rule", "Animate the rule", "Fingers from X to Y, thumb along Z", model.sweep),
-        Action("infinity", "Let w go to 0", "The point runs away; a direction is left", model.run_away),
+        Action("rule", "Animate the rule", "Fingers from X to Y, thumb along Z", actions.sweep),
+        Action("infinity", "Let w go to 0", "The point runs away; a direction is left", actions.run_away),
     ),
-    handles={"/point": model.hold_point},
+    handles={"/point": actions.hold_point},
     states={
         "left-handed OpenGL": {"handedness": "left"},
         "own handedness, said": {"handedness": "right", "to": "ros"},
@@ -41,7 +42,7 @@ SIM = Sim(
         "reflection": {"to": "directx", "grid_xy": True},
         "right-handed Unreal": {"convention": "unreal", "to": "unreal", "handedness": "right", "rule": 0},
         "down": {"convention": "aviation", "to": "enu", "grid_xz": True, "grid_yz": True},
-        "all grids": {"convention": "camera", "to": "enu", "w": 0.8, **dict.fromkeys(model.GRIDS, True)},
+        "all grids": {"convention": "camera", "to": "enu", "w": 0.8, **dict.fromkeys(GRIDS, True)},
         "near": {"w": 2},
         "out of view": {"w": 0.1},
         "very far": {"w": 1e-300, "convention": "ros"},

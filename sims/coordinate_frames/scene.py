@@ -1,15 +1,19 @@
-"""The scene: a car that never moves, the axes of two conventions, the point, the hand."""
+"""None"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
 from geometry.arrays import Array
-from sims.coordinate_frames.figures import DASHES, FLOOR, AxesFigure, Car, Grid, Hand
-from sims.coordinate_frames.model import DRAWN, GRIDS, FramesParams, FramesSolution
-from sims.coordinate_frames.words import distance_in_words, in_brackets
+from sims.coordinate_frames import meshes
+from sims.coordinate_frames.conventions import Axes
+from sims.coordinate_frames.params import GRIDS, FramesParams
+from sims.coordinate_frames.readouts import distance_in_words, in_brackets
+from sims.coordinate_frames.solution import DRAWN, FramesSolution
 from sims.kit.palette import AXES
-from sims.kit.stage import Stage
+from sims.kit.stage import IDENTITY, Lines, Quaternion, Stage
 
 LENGTH, GHOST_LENGTH = 1.25, 1.52
 """Of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
@@ -105,3 +109,119 @@ class Point:
             self.away.pose(position=[1.03 * v for v in tip])
         if s.distance is not None:
             self.away.text(distance_in_words(s.distance))
+
+
+DASHES: dict[str, tuple[float, float] | None] = {"x": None, "y": (0.12, 0.05), "z": (0.05, 0.05)}
+QUARTER: Quaternion = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+"""Turns the car's nose, +X of its own, to forward."""
+Z_ROUND: Quaternion = (0.0, 1.0, 0.0, 0.0)
+FLOOR = -0.66
+ARC_RADIUS = 0.42
+WORDS = {
+    "forward": ((0.0, 0.95, -0.36), (0.0, 1.38, -0.36), (0.0, 1.58, -0.36)),
+    "right": ((1.15, 0.1, FLOOR), (1.5, 0.1, FLOOR), (1.68, 0.1, FLOOR)),
+    "up": ((-0.75, 0.1, FLOOR), (-0.75, 0.1, FLOOR + 0.32), (-0.75, 0.1, FLOOR + 0.44)),
+}
+"""Tail and tip of the arrow that stands for each direction, and the place of its word."""
+
+
+class Car:
+    """The world: a car, and its right, forward and up in words. It never moves."""
+
+    def __init__(self, stage: Stage) -> None:
+        dark = stage.palette.dark
+        body, glass = ((96, 108, 122), (44, 52, 62)) if dark else ((201, 208, 216), (120, 132, 146))
+        tyres, trim = ((30, 35, 42), (150, 160, 170)) if dark else ((72, 80, 90), (236, 240, 244))
+        stage.group("/car").pose(QUARTER)
+        parts = meshes.car()
+        for name, color in (("body", body), ("glass", glass), ("tyres", tyres), ("trim", trim)):
+            stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"))
+        for word, (tail, tip, place) in WORDS.items():
+            stage.arrow(f"/{word}", tail, tip, "ghost", radius=0.012)
+            stage.label(f"/{word}/label", word, place)
+
+
+class AxesFigure:
+    """A convention's axes. What belongs to Z hangs on a node of its own, which turns round for left-handed axes."""
+
+    def __init__(self, stage: Stage, name: str, length: float, mark: str = "", *, ghost: bool = False) -> None:
+        self.node = stage.group(name)
+        self.third = stage.group(f"{name}/third")
+        self.shown: Axes | None = None
+        for axis, path, tip in zip(AXES, (name, name, f"{name}/third"), length * np.eye(3), strict=True):
+            if ghost:
+                stage.lines(f"{path}/{axis}", [np.zeros(3), tip], axis, width=2.0, dash=DASHES[axis])
+            else:
+                stage.arrow(f"{path}/{axis}", np.zeros(3), tip, axis, radius=0.02)
+            stage.label(f"{path}/letter_{axis}", axis.upper() + mark, tip * (1.0 + 0.13 / length))
+
+    def draw(self, axes: Axes) -> None:
+        if axes is not self.shown:
+            self.shown = axes
+            self.node.pose(axes.wxyz)
+            self.third.pose(IDENTITY if axes.sign > 0.0 else Z_ROUND)
+
+
+class Grid:
+    """The plane of two axes: lines along each in its colour."""
+
+    def __init__(self, stage: Stage, name: str, first: int, second: int, size: float = 1.0, cell: float = 0.25) -> None:
+        offsets = np.arange(-size, size + 0.5 * cell, cell)
+        pieces = np.zeros((2, len(offsets), 2, 3))
+        for half, (along, across) in zip(pieces, ((first, second), (second, first)), strict=True):
+            half[:, 0, along], half[:, 1, along] = -size, size
+            half[:, :, across] = offsets[:, None]
+        roles = [AXES[first]] * len(offsets) + [AXES[second]] * len(offsets)
+        self.node = stage.strokes(name, roles, width=1.0)
+        self.node.draw(pieces.reshape(-1, 2, 3).tolist())
+
+
+class Hand:
+    """A right or a left hand with its thumb along Z, and the arc that its fingers sweep, from X to Y."""
+
+    def __init__(self, stage: Stage, name: str) -> None:
+        self.node = stage.group(name)
+        self.hands = {side: _Fingers(stage, f"{name}/{side}", left=side == "left") for side in ("right", "left")}
+        self.arc: Lines = stage.lines(f"{name}/arc", np.zeros((2, 3)), "ink", width=3.5)
+        self.head = stage.mesh(f"{name}/head", meshes.arrow_head(), "ink")
+        self.rule: float | None = None
+
+    def draw(self, axes: Axes, rule: float, shown: bool) -> None:
+        self.node.show(shown)
+        if not shown:
+            return
+        self.node.pose(axes.wxyz)
+        for side, fingers in self.hands.items():
+            fingers.node.show(side == axes.handedness)
+            fingers.node.pose(position=axes.hand)
+            fingers.bend(rule)
+        angle = rule * math.pi / 2
+        self.arc.arc(ARC_RADIUS, angle)
+        self.head.pose(_about_z(angle), (ARC_RADIUS * math.cos(angle), ARC_RADIUS * math.sin(angle), 0.0))
+
+
+class _Fingers:
+    """One hand; its fingers bend at three joints."""
+
+    def __init__(self, stage: Stage, name: str, *, left: bool) -> None:
+        self.node = stage.group(name)
+        parts = meshes.hand(left=left)
+        self.joints = []
+        stage.mesh(f"{name}/palm", parts["palm"], "ghost")
+        stage.mesh(f"{name}/thumb", parts["thumb"], "z")
+        path = name
+        for part, at in zip(("near", "middle", "far"), (0.04, *meshes.SEGMENTS), strict=True):
+            path = f"{path}/{part}"
+            joint = stage.mesh(path, parts[part], "ghost")
+            joint.pose(position=(at, 0.0, 0.0))
+            self.joints.append(joint)
+        side = "left" if left else "right"
+        stage.label(f"{name}/label", f"{side} hand", (-0.72, 0.0, 0.16 if left else -0.16))
+
+    def bend(self, rule: float) -> None:
+        for joint, most in zip(self.joints, meshes.CURL, strict=True):
+            joint.pose(_about_z(math.radians(most) * rule))
+
+
+def _about_z(angle: float) -> Quaternion:
+    return math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)

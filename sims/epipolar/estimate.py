@@ -13,7 +13,7 @@ from geometry.arrays import Array
 from geometry.eight_point import FEWEST, eight_point
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, normalize, sampson_distance
 from geometry.triangulation import pixel_noise
-from sims.epipolar.model import OTHERS, EpipolarParams
+from sims.epipolar.params import OTHERS, EpipolarParams
 from sims.epipolar.rig import Pair, Views, existing_line
 
 
@@ -38,8 +38,6 @@ class Estimate:
 
 
 # ---- F from the points
-
-
 @lru_cache(maxsize=64)
 def _unit_noise(seed: int) -> Array:
     return pixel_noise(len(OTHERS) + 1, seed)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any
 
-from sims.epipolar.drawn import EyeDrawn, distance
-from sims.epipolar.model import OTHERS, EpipolarParams, Pixel, Side, title
+from sims.epipolar.drawing import EyeDrawn, distance
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure

@@ -11,17 +11,10 @@ import numpy as np
 from geometry import GeometryError, quaternion
 from geometry.arrays import Array
 from geometry.camera import R_WORLD_LEVEL, Camera
-from geometry.epipolar import (
-    epipolar_line_left,
-    epipolar_line_right,
-    epipole_pixel,
-    epipoles,
-    essential,
-    normalize,
-)
+from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipole_pixel, epipoles, essential, normalize
 from geometry.rotations import axis_rotation
-from sims.epipolar.drawn import Segments, chords, distance, drawn_size, spots
-from sims.epipolar.model import CENTER, OTHERS, Pixel, Place
+from sims.epipolar.drawing import Segments, chords, distance, drawn_size, spots
+from sims.epipolar.params import CENTER, OTHERS, Pixel, Place
 from sims.kit.stage import Quaternion
 
 RANK_TOLERANCE = 1e-12
@@ -56,8 +49,6 @@ class Views:
 
 
 # ---- the cameras
-
-
 @lru_cache(maxsize=256)
 def camera(center: Place, pan: float, focal: float) -> Camera:
     """A level camera at a place in metres, turned by degrees about the vertical."""

@@ -8,10 +8,10 @@ import numpy as np
 import trimesh
 
 from geometry.arrays import Array
-from sims.epipolar.drawn import EyeDrawn, Segment, Segments
-from sims.epipolar.model import OTHERS, EpipolarParams, Place, Side
+from sims.epipolar.drawing import EyeDrawn, Segment, Segments
+from sims.epipolar.params import OTHERS, EpipolarParams, Place, Side
+from sims.epipolar.readouts import short_trouble
 from sims.epipolar.solution import EpipolarSolution
-from sims.epipolar.words import short_trouble
 from sims.kit.camera_figure import CameraFigure
 from sims.kit.readout import quantity
 from sims.kit.stage import Stage

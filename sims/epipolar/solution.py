@@ -9,9 +9,9 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipolar_residual, sampson_distance
-from sims.epipolar.drawn import Drawn, Segment, drawn_size, eye_drawn, plane
+from sims.epipolar.drawing import Drawn, Segment, drawn_size, eye_drawn, plane
 from sims.epipolar.estimate import Estimate, estimate
-from sims.epipolar.model import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
 from sims.epipolar.rig import Pair, Views, existing, existing_line, other_drawings, pair, views
 
 EXACT = 1e-9

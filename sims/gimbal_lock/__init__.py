@@ -7,9 +7,11 @@ which holds an aircraft, about the middle ring's x. What they can do together de
 from __future__ import annotations
 
 from sims.gimbal_lock import actions
-from sims.gimbal_lock.model import GimbalParams, GimbalSolution, solve
+from sims.gimbal_lock.panes import panes
+from sims.gimbal_lock.params import GimbalParams
+from sims.gimbal_lock.readouts import describe, readouts
 from sims.gimbal_lock.scene import GimbalScene
-from sims.gimbal_lock.words import describe, panes, readouts
+from sims.gimbal_lock.solution import GimbalSolution, solve
 from sims.kit.sim import Action, Objective, Sim, View
 
 __all__ = ["SIM", "GimbalParams", "GimbalSolution", "solve"]

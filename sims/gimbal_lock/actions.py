@@ -9,7 +9,7 @@ import math
 from collections.abc import Generator, Iterator, Mapping
 from typing import Any
 
-from sims.gimbal_lock.model import GimbalParams
+from sims.gimbal_lock.params import GimbalParams
 from sims.kit.sim import Step
 
 Angles = dict[str, float]

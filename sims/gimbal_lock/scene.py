@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
-from sims.gimbal_lock import parts
-from sims.gimbal_lock.model import GimbalParams, GimbalSolution
-from sims.gimbal_lock.parts import RINGS, Ring
+from sims.gimbal_lock import meshes
+from sims.gimbal_lock.meshes import RINGS, Ring
+from sims.gimbal_lock.params import GimbalParams
+from sims.gimbal_lock.solution import GimbalSolution
 from sims.kit import bodies
 from sims.kit.readout import figure, quantity
 from sims.kit.stage import Label, Stage, arc_pieces
@@ -27,7 +28,7 @@ ANCHORS = {"z": "bottom-center", "y": "bottom-center", "x": "top-center"}
 """Labels stand above their tip or hang below it: where Z and X point up together, both are read."""
 LOST = 1.5
 """How far the arrow of the lost axis reaches."""
-WORLD = (-0.62, -0.8, parts.FLOOR + 0.01)
+WORLD = (-0.62, -0.8, meshes.FLOOR + 0.01)
 """Where the axes of the world are shown: beside the stand, where they hide nothing."""
 NEAR_TIP = (0.09, 0.0, 0.72 * LOST)
 """In the ellipsoid's frame, whose x points down at lock."""
@@ -44,10 +45,10 @@ class GimbalScene:
     """Three poses turn everything: each ring is nested in the one outside it."""
 
     def __init__(self, stage: Stage) -> None:
-        stage.ground(size=6.0, height=parts.FLOOR)
+        stage.ground(size=6.0, height=meshes.FLOOR)
         dark = stage.palette.dark
         steel = (112, 122, 134) if dark else (150, 158, 168)
-        stage.mesh("/stand", parts.stand(), steel)
+        stage.mesh("/stand", meshes.stand(), steel)
         stage.axes("/world", 0.4, radius=0.008).pose(position=WORLD)
         holders = ["", "/outer", "/outer/middle", "/outer/middle/inner"]
         self.rings = [stage.group(name) for name in holders[1:]]
@@ -56,7 +57,7 @@ class GimbalScene:
         grey = (96, 108, 122) if dark else (201, 208, 216)
         stage.mesh(f"{holders[3]}/hull", body["hull"], grey)
         stage.mesh(f"{holders[3]}/mark", body["mark"], "held")
-        stage.mesh(f"{holders[3]}/mount", parts.mount(AIRCRAFT), steel)
+        stage.mesh(f"{holders[3]}/mount", meshes.mount(AIRCRAFT), steel)
         self.ghost = stage.group("/ghost")
         for name, part in body.items():
             stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
@@ -67,9 +68,9 @@ class GimbalScene:
 
     def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
         """The ring; and its pivots and axis, which stay with what holds it."""
-        stage.mesh(f"{name}/ring", parts.ring(ring), ring.letter)
-        stage.mesh(f"{name}/stripe", parts.stripe(ring), "page")
-        stage.mesh(f"{holder}/pivots", parts.pivots(ring), ring.letter)
+        stage.mesh(f"{name}/ring", meshes.ring(ring), ring.letter)
+        stage.mesh(f"{name}/stripe", meshes.stripe(ring), "page")
+        stage.mesh(f"{holder}/pivots", meshes.pivots(ring), ring.letter)
         along = np.eye(3)["xyz".index(ring.letter)]
         dash = {"x": None, "y": (0.14, 0.05), "z": (0.05, 0.05)}[ring.letter]
         tip = TIPS[ring.letter]

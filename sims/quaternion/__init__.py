@@ -7,11 +7,12 @@ is q ⊗ start. Between the two it goes by SLERP, NLERP or Euler angles.
 from __future__ import annotations
 
 from sims.kit.sim import Action, Objective, Sim
-from sims.quaternion import moves
-from sims.quaternion.ball import VIEW, panes
-from sims.quaternion.model import QuaternionParams, QuaternionSolution, solve
+from sims.quaternion import actions
+from sims.quaternion.panes import VIEW, panes
+from sims.quaternion.params import QuaternionParams
+from sims.quaternion.readouts import describe, readouts
 from sims.quaternion.scene import QuaternionScene
-from sims.quaternion.words import describe, readouts
+from sims.quaternion.solution import QuaternionSolution, solve
 
 __all__ = ["SIM", "QuaternionParams", "QuaternionSolution", "solve"]
 
@@ -36,12 +37,12 @@ SIM = Sim(
     view=VIEW,
     panes=panes,
     actions=(
-        Action("apply", "Apply rotation", "Go to the target, which becomes the start of the next turn", moves.apply),
-        Action("compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", moves.compose),
-        Action("undo", "Undo last turn", "Take back the last turn made", moves.undo),
-        Action("play", "Play interpolation", "Go from start to target, t from 0 to 1", moves.play),
+        Action("apply", "Apply rotation", "Go to the target, which becomes the start of the next turn", actions.apply),
+        Action("compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", actions.compose),
+        Action("undo", "Undo last turn", "Take back the last turn made", actions.undo),
+        Action("play", "Play interpolation", "Go from start to target, t from 0 to 1", actions.play),
     ),
-    handles={"/tip": moves.hold_tip, "/point": moves.hold_point},
+    handles={"/tip": actions.hold_tip, "/point": actions.hold_point},
     states={
         "no turn": {"angle": 0},
         "half turn": {"axis": (1, 1, 0), "angle": 180},

@@ -11,8 +11,9 @@ from geometry.arrays import Array
 from sims.kit import bodies
 from sims.kit.readout import quantity
 from sims.kit.stage import Lines, Stage
-from sims.quaternion.model import TIP, QuaternionParams, QuaternionSolution
-from sims.quaternion.ways import Name, Way
+from sims.quaternion.params import TIP, QuaternionParams
+from sims.quaternion.paths import Name, Way
+from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
 """Radius of the angle's arc, and how far up the axis it is, in metres: outside the unit sphere."""

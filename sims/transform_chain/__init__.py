@@ -6,10 +6,11 @@ Link i is T_{i−1,i} = Rot(axis_i, angle_i) · Trans(length_i, 0, 0), and the e
 from __future__ import annotations
 
 from sims.kit.sim import Objective, Sim, Typed, View
-from sims.transform_chain import hands
-from sims.transform_chain.model import ChainParams, ChainSolution, solve
+from sims.transform_chain import actions
+from sims.transform_chain.params import ChainParams
+from sims.transform_chain.readouts import describe, readouts
 from sims.transform_chain.scene import ChainScene
-from sims.transform_chain.words import describe, readouts
+from sims.transform_chain.solution import ChainSolution, solve
 
 __all__ = ["SIM", "ChainParams", "ChainSolution", "solve"]
 
@@ -29,12 +30,12 @@ SIM = Sim(
     readouts=readouts,
     describe=describe,
     view=View((3.05, -3.0, 1.8), (1.0, 0.35, -0.25), 1.65),
-    actions=hands.ACTIONS,
-    handles={"/grip": hands.hold_end},
+    actions=actions.ACTIONS,
+    handles={"/grip": actions.hold_end},
     typed=(
         Typed(
             "/grip", "End effector", "Turns the joints so that the end effector gets there, as dragging it does",
-            (-16.0, -16.0, -16.0), (16.0, 16.0, 16.0), hands.end_place,
+            (-16.0, -16.0, -16.0), (16.0, 16.0, 16.0), actions.end_place,
         ),
     ),
     states={

@@ -8,10 +8,11 @@ import numpy as np
 
 from sims.kit.readout import quantity
 from sims.kit.stage import Stage
-from sims.transform_chain import shapes
-from sims.transform_chain.arm import Arm, frame
-from sims.transform_chain.model import ENOUGH, ChainParams, ChainSolution
-from sims.transform_chain.words import sub, transform_name
+from sims.transform_chain import meshes
+from sims.transform_chain.params import ChainParams
+from sims.transform_chain.readouts import sub, transform_name
+from sims.transform_chain.scene_arm import Arm, frame
+from sims.transform_chain.solution import ENOUGH, ChainSolution
 
 NOWHERE = np.zeros((2, 3))
 END = 0.42
@@ -24,11 +25,11 @@ class ChainScene:
     """The arm stands on a column; the world's origin is where its first joint is."""
 
     def __init__(self, stage: Stage) -> None:
-        stage.ground(size=8.0, height=shapes.FLOOR)
+        stage.ground(size=8.0, height=meshes.FLOOR)
         stage.axes("/world", 0.55, radius=0.008)
         grey = (70, 80, 92) if stage.palette.dark else (166, 176, 187)
-        stage.mesh("/foot", shapes.foot(), grey)
-        self.column = stage.mesh("/column", shapes.column(), grey)
+        stage.mesh("/foot", meshes.foot(), grey)
+        self.column = stage.mesh("/column", meshes.column(), grey)
         self.stage = stage
         self.arm = Arm(stage, "")
         self.end = End(stage)
@@ -41,8 +42,8 @@ class ChainScene:
 
     def draw(self, p: ChainParams, s: ChainSolution) -> None:
         self.arm.draw(s.joints, s.size)
-        self.column.pose(position=(0.0, 0.0, -shapes.AXLE * s.size))
-        self.column.scale((s.size, s.size, -shapes.FLOOR - shapes.AXLE * s.size))
+        self.column.pose(position=(0.0, 0.0, -meshes.AXLE * s.size))
+        self.column.scale((s.size, s.size, -meshes.FLOOR - meshes.AXLE * s.size))
         self._name(p, s)
         self.end.draw(p, s)
         self.grip.pose(position=s.end)
@@ -78,7 +79,7 @@ class End:
 
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/end_effector")
-        parts = shapes.gripper()
+        parts = meshes.gripper()
         grey = (126, 138, 152) if stage.palette.dark else (140, 152, 166)
         self.parts = [
             stage.mesh("/end_effector/hand", parts["hand"], grey, flat=True),

@@ -7,11 +7,12 @@ the rays meet, or nearly meet, and noise in the pixels says how far that may be 
 from __future__ import annotations
 
 from sims.kit.sim import Action, Objective, Sim, Typed, View
-from sims.triangulation import model
-from sims.triangulation.model import TriangulationParams, TriangulationSolution, solve
-from sims.triangulation.pictures import panes
+from sims.triangulation import actions
+from sims.triangulation.panes import panes
+from sims.triangulation.params import FARTHEST, NEAREST, TriangulationParams
+from sims.triangulation.readouts import describe, readouts
 from sims.triangulation.scene import TriangulationScene
-from sims.triangulation.words import describe, readouts
+from sims.triangulation.solution import TriangulationSolution, solve
 
 __all__ = ["SIM", "TriangulationParams", "TriangulationSolution", "solve"]
 
@@ -33,15 +34,15 @@ SIM = Sim(
     view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
     panes=panes,
     actions=(
-        Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", model.new_sample),
-        Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", model.switch_noise),
+        Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", actions.new_sample),
+        Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", actions.switch_noise),
     ),
     selects="method",
-    handles={"/point": model.hold_point, "left_uv": model.hold_left, "right_uv": model.hold_right},
+    handles={"/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right},
     typed=(
         Typed(
             "/point", "3D point", "Sets both image points exactly, as dragging the point in the scene does",
-            model.NEAREST, model.FARTHEST, model.held_point,
+            NEAREST, FARTHEST, actions.held_point,
         ),
     ),
     states={

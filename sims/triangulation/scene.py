@@ -12,18 +12,11 @@ from geometry.camera import R_WORLD_LEVEL
 from sims.kit.camera_figure import CameraFigure
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.stage import Stage
-from sims.triangulation.closeup import CloseUp
-from sims.triangulation.model import (
-    METHODS,
-    NAMES,
-    Pixel,
-    Rig,
-    TriangulationParams,
-    TriangulationSolution,
-    rig,
-)
-from sims.triangulation.region import SEEN_GAP, Region, gap_in_words, in_steps
-from sims.triangulation.shapes import Shape
+from sims.triangulation.params import NAMES, Pixel, TriangulationParams
+from sims.triangulation.scene_closeup import CloseUp
+from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
+from sims.triangulation.scene_shapes import Shape
+from sims.triangulation.solution import METHODS, Rig, TriangulationSolution, rig
 
 LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
 FAR = 12.0
@@ -32,7 +25,6 @@ BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
 RADIUS = 0.06
 FAR_AWAY = (0.0, 0.0, 0.0)
-
 WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
 
 

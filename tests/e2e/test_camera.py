@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sims.camera.solve import LIFT
+from sims.camera.solution import LIFT
 from sims.camera.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sims.epipolar.model import OTHERS
+from sims.epipolar.params import OTHERS
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 from tests.e2e.picture import Picture

@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from app.motion import between
-from sims.camera import SIM, CameraParams, CameraSolution, hands, solve
-from sims.camera.solve import LIFT
+from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
+from sims.camera.solution import LIFT
 from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
 from sims.kit import readout
 from sims.kit.palette import LIGHT
@@ -426,7 +426,7 @@ def test_two_points_with_one_pixel_are_pointed_out() -> None:
     a, b = np.array(PLACES["near-post"]), np.array(PLACES["far-post"])
     at = a + (a - b) / np.linalg.norm(a - b) * 2.0
     p = START.changed({"position": tuple(at.tolist()), "selected": "near-post"})
-    p = p.changed(hands.turned_to(p, tuple(b.tolist())))
+    p = p.changed(actions.turned_to(p, tuple(b.tolist())))
     assert "Far post, top has the same pixel" in words(readout.render(SIM.readouts(p, solve(p))))
 
 
@@ -502,7 +502,7 @@ def test_the_principal_point_is_moved_in_the_picture(rig: Rig) -> None:
 
 @given(states)
 def test_looking_at_the_subject_puts_it_on_the_principal_point(p: CameraParams) -> None:
-    for step in hands.look(p):
+    for step in actions.look(p):
         p = p.changed(step.changes)
     p = p.changed({"projection": "perspective"})
     subject = solve(p).subject
@@ -512,7 +512,7 @@ def test_looking_at_the_subject_puts_it_on_the_principal_point(p: CameraParams) 
 
 def test_looking_turns_the_shorter_way_round() -> None:
     p = START.changed({"position": (-1.0, 6.0, 1.0), "pan": -170})
-    pans = [step.changes["pan"] for step in hands.look(p)]
+    pans = [step.changes["pan"] for step in actions.look(p)]
     ways = [abs(b - a) for a, b in itertools.pairwise([p.pan, *pans])]
     assert sum(way for way in ways if way != 360.0) < 180.0
 
@@ -528,7 +528,7 @@ def height(p: CameraParams) -> float:
 
 def frames(p: CameraParams) -> Iterator[CameraParams]:
     """Every state that a browser may see on the way: each leg, in twelfths."""
-    for step in hands.dolly_zoom(p):
+    for step in actions.dolly_zoom(p):
         start = p
         for fraction in np.linspace(0.0, 1.0, 13).tolist():
             p = start.moved({k: between(getattr(start, k), v, fraction) for k, v in step.changes.items()})
@@ -571,7 +571,7 @@ def test_dolly_zoom_first_looks_where_the_subject_is_out_of_sight() -> None:
 
 @given(states)
 def test_actions_end_in_states_from_everywhere(p: CameraParams) -> None:
-    for action in (hands.look, hands.dolly_zoom):
+    for action in (actions.look, actions.dolly_zoom):
         state = p
         for step in action(p):
             state = state.changed(step.changes)

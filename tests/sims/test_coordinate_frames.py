@@ -14,8 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sims.coordinate_frames import SIM, FramesParams, FramesSolution, solve
-from sims.coordinate_frames.bodies import hand
-from sims.coordinate_frames.model import ARROW, IN_VIEW, NAMES, Convention
+from sims.coordinate_frames.conventions import NAMES, Convention
+from sims.coordinate_frames.meshes import hand
+from sims.coordinate_frames.solution import ARROW, IN_VIEW
 from sims.kit.params import choices
 from sims.kit.readout import figure
 from sims.kit.sim import Step

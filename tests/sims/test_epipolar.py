@@ -16,8 +16,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, plan, solve
-from sims.epipolar.model import OTHERS, PRESETS
-from sims.epipolar.pictures import panes
+from sims.epipolar.actions import PRESETS
+from sims.epipolar.panes import panes
+from sims.epipolar.params import OTHERS
 from sims.kit import readout
 from sims.kit.frame import INSET
 from sims.kit.palette import LIGHT

@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sims.gimbal_lock import SIM, GimbalParams, parts, solve
-from sims.gimbal_lock.model import NEAR, NEAR_PITCH
+from sims.gimbal_lock import SIM, GimbalParams, meshes, solve
+from sims.gimbal_lock.params import NEAR, NEAR_PITCH
 from sims.gimbal_lock.scene import PER_RATE
 from sims.kit import readout
 from sims.kit.palette import LIGHT
@@ -153,12 +153,12 @@ def test_pivots_stay_where_they_are_while_their_ring_turns(rig: Rig, ring: str, 
 def test_every_ring_turns_freely_inside_what_holds_it() -> None:
     """Between the spheres that two neighbours sweep there is a gap; the aircraft has one too."""
     spheres = []
-    for ring in parts.RINGS:
-        reach = np.linalg.norm(parts.ring(ring).vertices, axis=1)
+    for ring in meshes.RINGS:
+        reach = np.linalg.norm(meshes.ring(ring).vertices, axis=1)
         spheres.append((reach.min(), reach.max()))
     for (inside, _), (_, outside) in pairwise(spheres):
         assert outside < inside - 0.05
-    arm = np.linalg.norm(parts.stand().vertices, axis=1)
+    arm = np.linalg.norm(meshes.stand().vertices, axis=1)
     assert spheres[0][1] < arm.min() - 0.05
 
 
@@ -170,14 +170,14 @@ def test_the_aircraft_fits_in_the_inner_ring(rig: Rig) -> None:
 
 
 def test_bodies_are_closed_outwards_and_light() -> None:
-    bodies = [make(ring) for ring in parts.RINGS for make in (parts.ring, parts.pivots)]
-    for body in (*bodies, parts.mount(1.0)):
+    bodies = [make(ring) for ring in meshes.RINGS for make in (meshes.ring, meshes.pivots)]
+    for body in (*bodies, meshes.mount(1.0)):
         whole = body.copy()
         whole.merge_vertices()
         whole.update_faces(whole.nondegenerate_faces())  # an edge that ends on the axis makes them
         assert whole.is_watertight
         assert whole.volume > 0.0
-    sent = [*bodies, parts.stand(), *(parts.stripe(ring) for ring in parts.RINGS)]
+    sent = [*bodies, meshes.stand(), *(meshes.stripe(ring) for ring in meshes.RINGS)]
     assert sum(12 * (len(body.vertices) + len(body.faces)) for body in sent) < 400_000
 
 

@@ -20,9 +20,9 @@ from sims.kit import pane, readout
 from sims.kit.palette import LIGHT
 from sims.kit.params import LONGEST_VALUE, BadParams, spell
 from sims.kit.viewer import OTHER
-from sims.quaternion import SIM, QuaternionParams, moves, solve
-from sims.quaternion.ball import panes, pixel
-from sims.quaternion.model import MOST_TURNS, PRESETS
+from sims.quaternion import SIM, QuaternionParams, actions, solve
+from sims.quaternion.panes import panes, pixel
+from sims.quaternion.params import MOST_TURNS, PRESETS
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
@@ -501,7 +501,7 @@ def test_too_many_turns_are_refused() -> None:
 
 
 def test_play_leads_from_start_to_target() -> None:
-    steps = list(moves.play(START))
+    steps = list(actions.play(START))
     assert steps[0].changes == {"t": 0.0}
     assert steps[-1].changes == {"t": 1.0}
     assert 0.4 <= sum(step.seconds for step in steps) <= 1.5

@@ -18,8 +18,8 @@ from scipy.spatial.transform import Rotation
 from geometry.kinematics import Chain
 from sims.kit import readout
 from sims.kit.params import BadParams
-from sims.transform_chain import SIM, ChainParams, ChainSolution, hands, solve
-from sims.transform_chain.words import transform_name
+from sims.transform_chain import SIM, ChainParams, ChainSolution, actions, solve
+from sims.transform_chain.readouts import transform_name
 from tests.server import Rig
 from tests.sims.markup import words
 
@@ -347,25 +347,25 @@ def test_adding_and_removing_links_keeps_the_other_values() -> None:
         assert state(rig).count == 1
 
 
-@pytest.mark.parametrize("preset", hands.PRESETS, ids=lambda preset: preset.name)
-def test_presets_are_what_they_say(preset: hands.Preset) -> None:
-    p = EIGHT.changed(hands.preset(preset)(EIGHT))
-    assert hands.known(p) is preset
+@pytest.mark.parametrize("preset", actions.PRESETS, ids=lambda preset: preset.name)
+def test_presets_are_what_they_say(preset: actions.Preset) -> None:
+    p = EIGHT.changed(actions.preset(preset)(EIGHT))
+    assert actions.known(p) is preset
     assert preset.says in words(readout.render(SIM.readouts(p, solve(p))))
-    assert hands.known(p.moved({"angles.0": 3.0})) is preset
-    assert hands.known(p.moved({"lengths.1": 0.111})) is None
+    assert actions.known(p.moved({"angles.0": 3.0})) is preset
+    assert actions.known(p.moved({"lengths.1": 0.111})) is None
     assert solve(p).singular == (preset.name == "scara")
 
 
 def test_six_axis_arm_reaches_as_far_as_its_maker_says() -> None:
     """1.45 m to the wrist's middle, for the ABB IRB 1600-6/1.45."""
-    arm = next(preset for preset in hands.PRESETS if preset.name == "six-axis")
+    arm = next(preset for preset in actions.PRESETS if preset.name == "six-axis")
     assert sum(arm.lengths[:5]) == pytest.approx(1.45)
 
 
 @given(arms(), st.tuples(*[st.floats(-1, 1)] * 3))
 def test_held_end_effector_comes_near_within_half_turns(p: ChainParams, place: tuple[float, float, float]) -> None:
-    held = p.moved(hands.hold_end(p, place))
+    held = p.moved(actions.hold_end(p, place))
     assert all(-180 <= a <= 180 for a in held.angles)
     assert (held.lengths, held.axes, held.trace) == (p.lengths, p.axes, None)
     s = solve(held)
@@ -380,7 +380,7 @@ def test_held_end_effector_comes_near_within_half_turns(p: ChainParams, place: t
 
 
 def test_reachable_place_is_reached_and_nothing_is_said() -> None:
-    p = START.moved(hands.hold_end(START, (1.2, 0.4, 0.3)))
+    p = START.moved(actions.hold_end(START, (1.2, 0.4, 0.3)))
     s = solve(p)
     assert p.pull is None
     assert s.end == pytest.approx((1.2, 0.4, 0.3), abs=1e-7)
@@ -417,13 +417,13 @@ def test_place_inside_the_bounds_that_is_not_reached_is_not_called_out_of_reach(
 def test_end_effector_is_dragged_off_a_singular_pose(name: str) -> None:
     p = START.changed(SIM.states[name])
     aim = solve(p.moved({f"angles.{k}": a + 25 for k, a in enumerate(p.angles)})).end
-    held = p.moved(hands.hold_end(p, aim))
+    held = p.moved(actions.hold_end(p, aim))
     np.testing.assert_allclose(solve(held).end, aim, rtol=0, atol=1e-6)
 
 
 def test_an_arm_in_a_plane_stays_in_it() -> None:
     p = START.changed(SIM.states["planar 2R"])
-    held = p.moved(hands.hold_end(p, (0.9, 0.9, 0.7)))
+    held = p.moved(actions.hold_end(p, (0.9, 0.9, 0.7)))
     assert held.pull is None
     assert solve(held).end == pytest.approx((0.9, 0.9, 0.0), abs=1e-7)
 
@@ -432,13 +432,13 @@ def test_an_arm_in_a_plane_stays_in_it() -> None:
 def test_new_targets_can_be_reached_and_differ(p: ChainParams) -> None:
     seen = {p.target}
     for _ in range(4):
-        p = p.changed(hands.new_target(p))
+        p = p.changed(actions.new_target(p))
         assert p.target is not None
         assert p.target not in seen
         seen.add(p.target)
         least, greatest = solve(p).reach
         assert least - 0.002 <= math.hypot(*p.target) <= greatest + 0.002
-    assert p.changed(hands.new_target(p)) == p.changed(hands.new_target(p))
+    assert p.changed(actions.new_target(p)) == p.changed(actions.new_target(p))
 
 
 def test_target_is_shown_until_it_is_reached_and_sliders_leave_it(rig: Rig) -> None:
@@ -457,7 +457,7 @@ def test_target_is_shown_until_it_is_reached_and_sliders_leave_it(rig: Rig) -> N
 
 def test_sweep_turns_one_joint_once_round_and_back() -> None:
     for p in (START, EIGHT):
-        steps = list(hands.sweep(p))
+        steps = list(actions.sweep(p))
         k = (p.trace or 1) - 1
         now = p
         for step in steps:
@@ -465,7 +465,7 @@ def test_sweep_turns_one_joint_once_round_and_back() -> None:
             assert [a for j, a in enumerate(now.angles) if j != k] == [a for j, a in enumerate(p.angles) if j != k]
         assert now.angles == p.angles
         assert now.trace == k + 1
-        assert sum(step.seconds for step in steps) == pytest.approx(hands.FULL_TURN)
+        assert sum(step.seconds for step in steps) == pytest.approx(actions.FULL_TURN)
 
 
 # ---- links that restore the arm, and lists that don't agree

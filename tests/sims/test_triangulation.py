@@ -23,9 +23,10 @@ from sims.kit.frame import inside
 from sims.kit.palette import LIGHT
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
-from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, model, solve
-from sims.triangulation.closeup import chord
-from sims.triangulation.pictures import magnification, panes
+from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, solve
+from sims.triangulation import solution as mathematics
+from sims.triangulation.panes import magnification, panes
+from sims.triangulation.scene_closeup import chord
 from tests.frames import differences
 from tests.server import Rig
 from tests.sims.markup import words, xml
@@ -100,7 +101,7 @@ def test_defaults_are_the_projections_of_the_point_that_the_contract_names() -> 
 @each_pair
 def test_linear_point_is_that_of_opencv(changes: dict[str, Any]) -> None:
     p = START.changed(changes)
-    left, right = (np.array(pixel).reshape(2, 1) for pixel in model.measured(p))
+    left, right = (np.array(pixel).reshape(2, 1) for pixel in mathematics.measured(p))
     # In normalised coordinates, where its equations are well scaled.
     K_inverse = np.linalg.inv(np.array([[p.focal, 0, 320], [0, p.focal, 240], [0, 0, 1]]))
     normal = [K_inverse[:2, :2] @ pixel + K_inverse[:2, 2:] for pixel in (left, right)]
@@ -111,8 +112,8 @@ def test_linear_point_is_that_of_opencv(changes: dict[str, Any]) -> None:
 @each_pair
 def test_optimal_point_projects_to_opencvs_corrected_pixels(changes: dict[str, Any]) -> None:
     p = START.changed(changes)
-    left, right = model.measured(p)
-    F = model.rig(p.baseline, p.focal).F
+    left, right = mathematics.measured(p)
+    F = mathematics.rig(p.baseline, p.focal).F
     corrected = cv2.correctMatches(F, np.array([[left]]), np.array([[right]]))
     for ours, theirs in zip(projections(p, found(p, "optimal")), corrected, strict=True):
         np.testing.assert_allclose(ours, np.ravel(theirs), rtol=0, atol=1e-6)
@@ -124,7 +125,7 @@ def test_mid_point_is_half_way_along_the_common_perpendicular(changes: dict[str,
     solution = solve(p)
     assert solution.closest_points is not None
     left, right = solution.closest_points
-    rays = [np.array([(u - 320) / p.focal, 1.0, -(v - 240) / p.focal]) for u, v in model.measured(p)]
+    rays = [np.array([(u - 320) / p.focal, 1.0, -(v - 240) / p.focal]) for u, v in mathematics.measured(p)]
     for ray in rays:
         assert abs((right - left) @ ray) < 1e-9
     assert np.linalg.norm(right - left) == pytest.approx(solution.ray_gap, abs=1e-12)
@@ -200,7 +201,7 @@ def test_half_the_baseline_doubles_the_depth_sigma(depth: float) -> None:
 
 
 def at_depth(p: TriangulationParams, depth: float) -> TriangulationSolution:
-    return solve(p.changed(model.hold_point(p, (0.05, depth, 1.1))))
+    return solve(p.changed(actions.hold_point(p, (0.05, depth, 1.1))))
 
 
 @pytest.mark.parametrize("changes", [{}, {"baseline": 0.3}, {"noise": 2.0}, {"left_uv": (360, 240)}])
@@ -228,7 +229,7 @@ def test_drawn_samples_agree_with_the_propagated_covariance() -> None:
     solution = solve(p)
     assert solution.covariance is not None
     cameras = parallel_rig(p.baseline, p.focal)
-    many = monte_carlo(*cameras, *model.measured(p), p.noise, 20_000, seed=5)
+    many = monte_carlo(*cameras, *mathematics.measured(p), p.noise, 20_000, seed=5)
     sampled = np.cov(many.T)
     scale = np.sqrt(np.outer(np.diag(solution.covariance), np.diag(solution.covariance)))
     assert np.abs((sampled - solution.covariance) / scale).max() < 0.1
@@ -253,9 +254,9 @@ def test_noise_is_on_both_points_and_the_same_for_the_same_seed() -> None:
 
 
 def test_noise_grows_with_its_deviation_and_zero_is_off() -> None:
-    assert model.measured(START) == (START.left_uv, START.right_uv)
+    assert mathematics.measured(START) == (START.left_uv, START.right_uv)
     one, two = (
-        np.subtract(model.measured(START.changed({"noise": s})), [START.left_uv, START.right_uv]) for s in (1, 2)
+        np.subtract(mathematics.measured(START.changed({"noise": s})), [START.left_uv, START.right_uv]) for s in (1, 2)
     )
     np.testing.assert_allclose(two, 2.0 * one, rtol=1e-9)
     assert len(solve(START).cloud) == 0
@@ -265,7 +266,7 @@ def test_noise_grows_with_its_deviation_and_zero_is_off() -> None:
 def test_noise_of_many_seeds_is_gaussian_with_the_deviation_named() -> None:
     shifts = np.array(
         [
-            np.subtract(model.measured(START.changed({"noise": 2.0, "seed": k})), [START.left_uv, START.right_uv])
+            np.subtract(mathematics.measured(START.changed({"noise": 2.0, "seed": k})), [START.left_uv, START.right_uv])
             for k in range(500)
         ]
     )
@@ -307,7 +308,7 @@ def test_where_there_is_no_point_that_is_said_and_nothing_is_made_up(name: str, 
     html = readout.render(SIM.readouts(p, solution))
     assert "s3-warn" in html
     assert "⚠" in words(html)
-    assert model.held_point(p, solution) is None
+    assert actions.held_point(p, solution) is None
 
 
 def test_parallel_rays_have_no_disparity_and_no_parallax_but_a_distance() -> None:
@@ -347,7 +348,7 @@ def test_holding_a_point_sets_both_pixels_to_its_projections_or_the_nearest_seen
     baseline: float, focal: float, x: float, y: float, z: float
 ) -> None:
     p = START.changed({"baseline": baseline, "focal": focal})
-    held = p.changed(model.hold_point(p, (x, y, z)))
+    held = p.changed(actions.hold_point(p, (x, y, z)))
     assert held.left_uv[1] == held.right_uv[1], "both pixels come from one point"
     assert held.left_uv[0] > held.right_uv[0], "which is in front of the cameras"
     if y <= 0.01:
@@ -370,11 +371,11 @@ def test_handles_of_the_pictures_set_their_pixel() -> None:
 
 
 def test_buttons_lead_to_the_next_sample_and_switch_noise() -> None:
-    assert START.changed(model.new_sample(START)) == START.changed({"seed": 1, "noise": 1.0})
+    assert START.changed(actions.new_sample(START)) == START.changed({"seed": 1, "noise": 1.0})
     noisy = START.changed({"noise": 0.3, "seed": 9999})
-    assert noisy.changed(model.new_sample(noisy)) == noisy.changed({"seed": 0})
-    assert noisy.changed(model.switch_noise(noisy)).noise == 0.0
-    assert START.changed(model.switch_noise(START)).noise == 1.0
+    assert noisy.changed(actions.new_sample(noisy)) == noisy.changed({"seed": 0})
+    assert noisy.changed(actions.switch_noise(noisy)).noise == 0.0
+    assert START.changed(actions.switch_noise(START)).noise == 1.0
 
 
 def test_the_point_can_be_typed_and_hides_where_there_is_none() -> None:
@@ -438,7 +439,7 @@ def test_image_points_are_linked_with_their_lines_rays_and_rows(rig: Rig, p: Tri
     rig.show(p)
     pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
     rows = {str(e.get("data-link")): [str(td.text) for td in e.iter("td")] for e in xml(tables).iter("tr")}
-    for side, measured in zip(("left", "right"), model.measured(p), strict=True):
+    for side, measured in zip(("left", "right"), mathematics.measured(p), strict=True):
         lines = 3 if p.noise else 1  # a cross is two
         assert linked(pictures, side) == ["g", *["line"] * lines]
         assert linked(tables, side) == ["tr"], "it can't be selected"
@@ -475,7 +476,7 @@ def test_the_true_point_has_a_row_with_the_errors_that_the_noise_made() -> None:
     assert solution.true_point is not None
     tables = xml(readout.render(SIM.readouts(NOISY, solution)))
     (row,) = (e for e in tables.iter("tr") if e.get("data-link") == "true")
-    a, b = (math.dist(m, h) for m, h in zip(model.measured(NOISY), (NOISY.left_uv, NOISY.right_uv), strict=True))
+    a, b = (math.dist(m, h) for m, h in zip(mathematics.measured(NOISY), (NOISY.left_uv, NOISY.right_uv), strict=True))
     apart = 1000.0 * math.dist(solution.true_point, solution.point)
     expected = [figure(a, 3), figure(b, 3), figure(math.hypot(a, b) / math.sqrt(2), 3), f"{figure(apart, 1)}\u2009mm"]
     assert [str(td.text) for td in row.iter("td")] == expected

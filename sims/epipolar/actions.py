@@ -1,0 +1,76 @@
+"""What buttons and handles do to a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from sims.epipolar.params import LAST, LAST_SEED, LEFT, POINT, RIGHT, EpipolarParams, Side
+from sims.epipolar.rig import camera
+from sims.kit.params import plain
+from sims.kit.sim import Step
+
+PRESETS: dict[str, dict[str, Any]] = {
+    "rectified": {"left": LEFT, "right": RIGHT, "left_pan": 0.0, "right_pan": 0.0},
+    "converging": {"left": (-1.2, 0.4, 1.0), "right": (1.2, 0.4, 1.0), "left_pan": -18.0, "right_pan": 18.0},
+    "forward": {"left": (0.0, -0.6, 1.0), "right": (0.0, 0.9, 1.0), "left_pan": 0.0, "right_pan": 0.0},
+    "vertical": {"left": (0.0, 0.0, 0.65), "right": (0.0, 0.0, 1.45), "left_pan": 0.0, "right_pan": 0.0},
+}
+"""Camera centres and pans; the rest of what a preset sets is in `preset`."""
+GLIDE = 0.9
+
+
+def preset(name: str) -> Any:
+    """An action: both cameras glide to their places, and what is seen of the point is as at the start."""
+
+    def run(p: EpipolarParams) -> Iterator[Step]:
+        yield Step({**PRESETS[name], "focal": 600.0, "point": POINT}, GLIDE)
+
+    return run
+
+
+def new_sample(p: EpipolarParams) -> dict[str, Any]:
+    """Noise of the next seed, on as many points as an estimate needs and some more."""
+    if p.noise > 0.0 and p.points >= 8:
+        return {"seed": (p.seed + 1) % (LAST_SEED + 1)}
+    return {"noise": p.noise or 1.0, "points": max(p.points, 12)}
+
+
+def clear_pick(p: EpipolarParams) -> dict[str, Any]:
+    """No pixel is picked."""
+    return {"pick": None}
+
+
+def hold(name: str) -> Any:
+    """A handle that sets a place in the scene."""
+
+    def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
+        return {name: place}
+
+    return run
+
+
+def hold_pick(side: Side) -> Any:
+    """A handle that picks a pixel of one picture."""
+
+    def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
+        u, v = (plain(min(max(at, 0.0), last)) for at, last in zip(place, LAST, strict=False))
+        return {"pick": f"{side}:{u},{v}"}
+
+    return run
+
+
+NEAREST = 0.05
+"""Metres before a camera that a point which is held in its picture keeps."""
+
+
+def hold_pixel(side: Side) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str, Any]]:
+    """A handle that moves the point parallel to a picture, to where that picture shows it at a pixel."""
+
+    def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
+        eye = camera(p.left, p.left_pan, p.focal) if side == "left" else camera(p.right, p.right_pan, p.focal)
+        depth = max(float(eye.project(p.point)[1]), NEAREST)
+        x, y, z = (eye.center + depth * eye.back_projection.dot([place[0], place[1], 1.0])).tolist()
+        return {"point": (x, y, z)}
+
+    return run

@@ -1,0 +1,106 @@
+"""Parameters of the sim."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import field_validator
+
+from geometry.arrays import Array
+from sims.kit.params import Params, number, switch, text, vector
+
+Pixel = tuple[float, float]
+Place = tuple[float, float, float]
+Side = Literal["left", "right"]
+WIDTH, HEIGHT = 640, 480
+LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
+CENTER: Pixel = (320.0, 240.0)
+"""Principal point of both cameras."""
+LAST_SEED = 9999
+LEFT: Place = (-0.6, 0.0, 1.0)
+RIGHT: Place = (0.6, 0.0, 1.0)
+POINT: Place = (0.3, 4.0, 1.2)
+OTHERS: Array = np.array(
+    [
+        (-0.7, 3.6, 0.7), (0.8, 4.6, 1.5), (-0.3, 5.0, 1.7), (0.6, 3.4, 0.6), (-0.9, 4.8, 1.2), (1.0, 5.6, 0.9),
+        (-0.1, 4.2, 0.5), (-0.6, 3.9, 1.6), (0.0, 5.8, 1.5), (-0.5, 5.6, 0.3), (0.9, 3.8, 0.9),
+    ]
+)  # fmt: skip
+"""The points after the first, in the world: in sight of both cameras in each preset, and not on one plane."""
+
+
+class EpipolarParams(Params):
+    """State of the sim."""
+
+    left: Place = vector(
+        LEFT, (-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera",
+        description="Centre of the left camera: X, Y, Z",
+    )  # fmt: skip
+    right: Place = vector(
+        RIGHT, (-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Right camera",
+        description="Centre of the right camera: X, Y, Z",
+    )  # fmt: skip
+    left_pan: float = number(
+        0, -60, 60, step=0.5, unit="°", title="Left pan",
+        description="Turn of the left camera about the vertical; positive is to its left",
+    )  # fmt: skip
+    right_pan: float = number(
+        0, -60, 60, step=0.5, unit="°", title="Right pan",
+        description="Turn of the right camera about the vertical; positive is to its left",
+    )  # fmt: skip
+    focal: float = number(
+        600, 200, 1500, step=10, unit="px", title="Focal length", symbol="f", description="Of both cameras"
+    )
+    point: Place = vector(
+        POINT, (-5.0, -3.0, -2.0), (5.0, 12.0, 5.0), step=0.01, unit="m", title="3D point",
+        description="The first point, which you can also drag in the scene: X, Y, Z",
+    )  # fmt: skip
+    points: int = number(
+        6, 1, 12, step=1, title="Points", description="How many points are shown, the 3D point among them"
+    )
+    show_plane: bool = switch(
+        True, title="Show epipolar plane", description="The plane through both camera centres and the 3D point"
+    )
+    show_all_lines: bool = switch(
+        False, title="Show all epipolar lines", description="The lines of all points, and not of the 3D point alone"
+    )
+    show_top: bool = switch(True, title="Show from above", description="A plan of the scene below the pictures")
+    selected: int = number(
+        1, 1, 12, step=1, title="Selected point", control="none",
+        description="The point that is marked everywhere, by its number; 1 is the 3D point. A click chooses another",
+    )  # fmt: skip
+    noise: float = number(
+        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
+        description="Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off",
+    )  # fmt: skip
+    seed: int = number(
+        0, 0, LAST_SEED, step=1, title="Sample", description="Seed of the noise: the same seed, the same noise",
+        control="number",
+    )  # fmt: skip
+    pick: str | None = text(
+        title="Picked pixel", description="A pixel of one picture; its epipolar line is shown in the other",
+        pattern=r"^(left|right):[0-9.e-]{1,24},[0-9.e-]{1,24}$",
+        allowed="left:u,v or right:u,v, with u from 0 to 639 and v from 0 to 479",
+    )  # fmt: skip
+
+    @field_validator("pick")
+    @classmethod
+    def _in_a_picture(cls, pick: str | None) -> str | None:
+        if pick is not None:
+            _, (u, v) = read_pick(pick)
+            if not (0.0 <= u <= LAST[0] and 0.0 <= v <= LAST[1]):
+                raise ValueError("outside the picture")
+        return pick
+
+
+def title(number: int) -> str:
+    """What a point is called."""
+    return "P, the 3D point" if number == 1 else f"Point {number}"
+
+
+def read_pick(pick: str) -> tuple[Side, Pixel]:
+    """Picture and pixel; raises ValueError if they aren't numbers."""
+    side, _, place = pick.partition(":")
+    u, v = map(float, place.split(","))
+    return ("left" if side == "left" else "right"), (u, v)

@@ -1,0 +1,184 @@
+"""Read-outs, and a sentence for people who listen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from sims.epipolar.drawing import in_picture
+from sims.epipolar.estimate import Estimate
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel
+from sims.epipolar.solution import EpipolarSolution
+from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+
+RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
+RIGHT_LINE = "<msup><mi>l</mi><mo>′</mo></msup>"
+RIGHT_EPIPOLE = "<msup><mi>e</mi><mo>′</mo></msup>"
+TRANSPOSED = "<msup>{}<mi>T</mi></msup>"
+NUMBERS = tuple(f"{k}" for k in range(1, len(OTHERS) + 2))
+THOUSANDTHS = "×10⁻³"
+FARTHEST = 1e6
+"""Pixels from which on an epipole's place is only said to be far."""
+
+
+def unseen(s: EpipolarSolution) -> str:
+    """By which cameras the point can't be seen, as it isn't in front of them: '' if in front of both."""
+    sides = [side for side, depth in (("left", s.depth_left), ("right", s.depth_right)) if depth <= 0.0]
+    return "either camera" if len(sides) == 2 else f"the {sides[0]} camera" if sides else ""
+
+
+def short_trouble(s: EpipolarSolution) -> str | None:
+    """What doesn't exist, in a few words."""
+    if s.F is None:
+        return "no baseline: no epipolar plane"
+    if where := unseen(s):
+        return f"P isn’t in front of {where}"
+    return "P is on the baseline: no one plane" if s.on_baseline else None
+
+
+def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
+    """Numbers beside the scene."""
+    yield from _status(s)
+    for side, name, pixel in (("left", symbol("p"), s.pixel_left), ("right", RIGHT_PIXEL, s.pixel_right)):
+        if pixel is not None:
+            yield Formula(f"Pixel of P in the {side} picture", name, row(pixel, 2), "px")
+    if s.residual is not None:
+        constraint = f"{TRANSPOSED.format(RIGHT_PIXEL)}{symbol('F')}{symbol('p')}"
+        yield Formula("Epipolar constraint", constraint, mathml(s.residual))
+    if s.sampson is not None:
+        yield Formula("Sampson distance of p and p′", symbol("d"), mathml(s.sampson), "px")
+    yield from _matrices(s)
+    yield from _lines(p, s)
+    yield from _epipoles(s)
+    yield _points(p, s)
+    yield from _estimate(p, s)
+
+
+def _points(p: EpipolarParams, s: EpipolarSolution) -> Table:
+    """Pixels of all points that are shown."""
+    rows: list[tuple[str, ...]] = [("point", "u", "v", "u′", "v′")]
+    for name, left, right in zip(("P", *NUMBERS[1:]), s.pixels_left.tolist(), s.pixels_right.tolist(), strict=False):
+        rows.append((name, *_cells(*left), *_cells(*right)))
+    words = "Points: left and right pixel; in brackets what is outside the picture"
+    return Table(words, rows, NUMBERS, f"{p.selected}")
+
+
+@lru_cache(maxsize=256)
+def _cells(u: float, v: float) -> tuple[str, str]:
+    if u != u:
+        return "–", "–"
+    across, down = figure(u, 1), figure(v, 1)
+    return (across, down) if in_picture(u, v) else (f"({across})", f"({down})")
+
+
+def _status(s: EpipolarSolution) -> Iterator[Note]:
+    if s.F is None:
+        yield Note(
+            "Both cameras are at one place: without a baseline there is no epipolar plane, and F and E don’t exist.",
+            "warn",
+        )
+    if where := unseen(s):
+        yield Note(f"P isn’t in front of {where}, and has no pixel there.", "warn")
+    if s.on_baseline:
+        yield Note("P is on the line through both centres: every plane through it would do, so P has no line.", "warn")
+    for side, pixel in (("left", s.pixel_left), ("right", s.pixel_right)):
+        if pixel is not None and not in_picture(*pixel):
+            yield Note(f"P is outside the {side} picture.", "near")
+
+
+def _matrices(s: EpipolarSolution) -> Iterator[Readout]:
+    if s.F is None or s.E is None or s.singular_values is None:
+        return
+    yield Formula("Fundamental matrix, of norm 1", symbol("F"), mathml(1e3 * s.F), THOUSANDTHS)
+    yield Formula(
+        f"Singular values of F: rank {s.rank}", symbol("σ"), row((1e3 * s.singular_values).tolist()), THOUSANDTHS
+    )
+    yield Formula("Essential matrix, of norm 1", symbol("E"), mathml(s.E))
+
+
+def _lines(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
+    if s.line_left is not None:
+        yield Formula("Line of p′ in the left picture: a, b, c", symbol("l"), row(s.line_left.tolist()))
+    if s.line_right is not None:
+        yield Formula("Line of p in the right picture: a, b, c", RIGHT_LINE, row(s.line_right.tolist()))
+    if s.picked is None:
+        return
+    u, v = s.picked.pixel
+    other = "right" if s.picked.side == "left" else "left"
+    words = f"Pixel {figure(u, 1)}, {figure(v, 1)}, picked in the {s.picked.side} picture"
+    if s.picked.line is None:
+        why = "there is no baseline" if s.F is None else "it is the epipole"
+        yield Note(f"{words}: no line in the other, for {why}.", "near")
+    else:
+        yield Formula(f"{words}: its line in the {other}", symbol("l", "pick"), row(s.picked.line.tolist()))
+
+
+def _epipoles(s: EpipolarSolution) -> Iterator[Readout]:
+    for side, name, pole, pixel in (
+        ("left", symbol("e"), s.epipole_left, s.epipole_left_pixel),
+        ("right", RIGHT_EPIPOLE, s.epipole_right, s.epipole_right_pixel),
+    ):
+        if pole is None:
+            continue
+        if pixel is None:
+            yield Formula(f"{side.capitalize()} epipole, homogeneous: at infinity", name, row(pole.tolist()))
+        elif far_away(pixel):
+            yield Note(f"{side.capitalize()} epipole: more than a million pixels away.")
+        else:
+            yield Formula(f"{side.capitalize()} epipole", name, row(pixel, 1), "px")
+
+
+def far_away(pixel: Pixel) -> bool:
+    """Whether a pixel's place says nothing but that it is far."""
+    return max(map(abs, pixel)) > FARTHEST
+
+
+def _estimate(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
+    e = s.estimate
+    if e.status == "few":
+        yield Note(f"To estimate F takes 8 points that both cameras see; here are {e.seen}.")
+    elif e.status == "ambiguous":
+        yield Note("These pixels fit more than one F: no estimate.", "warn")
+    elif e.F is not None and e.conditioning is not None:
+        words = f"F estimated from {e.seen} points with {quantity(p.noise, 'px', 2)} of noise"
+        yield Formula(words, "<mover><mi>F</mi><mo>^</mo></mover>", mathml(1e3 * e.F), THOUSANDTHS)
+        yield _errors(e)
+        if e.difference is not None:
+            yield Formula("Frobenius norm of the error of E that this means", symbol("Δ"), mathml(e.difference))
+        yield Formula("Conditioning of the equations, σ₈ : σ₁", symbol("κ"), mathml(e.conditioning, 4))
+
+
+def _errors(e: Estimate) -> Table:
+    rows = [("F", "noisy pixels", "exact pixels")]
+    if e.noisy_rms_true is not None:
+        rows.append(("true", figure(e.noisy_rms_true, 3), figure(0.0, 3)))
+    if e.noisy_rms is not None and e.exact_rms is not None:
+        rows.append(("estimated", figure(e.noisy_rms, 3), figure(e.exact_rms, 3)))
+    return Table("Sampson distance in pixels, root mean square", rows)
+
+
+def describe(p: EpipolarParams, s: EpipolarSolution) -> str:
+    """One sentence."""
+    place = ", ".join(figure(v, 2) for v in p.point)
+    if s.F is None:
+        return f"Both cameras are at one place: no epipolar plane, and no F; point {place} m."
+    parts = [f"Point {place} m"]
+    if where := unseen(s):
+        parts.append(f"not in front of {where}")
+    parts += [
+        f"{side} pixel {figure(pixel[0], 0)}, {figure(pixel[1], 0)}"
+        for side, pixel in (("left", s.pixel_left), ("right", s.pixel_right))
+        if pixel is not None
+    ]
+    parts += [
+        f"{side} epipole {epipole_in_words(pixel)}"
+        for side, pixel in (("left", s.epipole_left_pixel), ("right", s.epipole_right_pixel))
+    ]
+    return "; ".join([*parts, f"baseline {quantity(s.baseline, 'm', 2)}"]) + "."
+
+
+def epipole_in_words(pixel: Pixel | None) -> str:
+    """Where an epipole is."""
+    if pixel is None:
+        return "at infinity"
+    return "far away" if far_away(pixel) else f"at {figure(pixel[0], 0)}, {figure(pixel[1], 0)}"

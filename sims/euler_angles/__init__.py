@@ -1,0 +1,48 @@
+"""euler-angles: how three turns compose into one rotation.
+
+An aircraft (nose +X, left wing +Y, top +Z) is turned three times. Intrinsic turns are about the axes that the
+aircraft has by then, extrinsic ones about the fixed axes of the world.
+"""
+
+from __future__ import annotations
+
+from sims.euler_angles.actions import animate
+from sims.euler_angles.params import EulerParams
+from sims.euler_angles.readouts import describe, readouts
+from sims.euler_angles.scene import EulerScene
+from sims.euler_angles.solution import EulerSolution, solve
+from sims.kit.sim import Action, Objective, Sim, View
+
+__all__ = ["SIM", "EulerParams", "EulerSolution", "solve"]
+
+SIM = Sim(
+    slug="euler-angles",
+    title="Euler angles",
+    summary="Turn an aircraft three times, see each turn in its own frame, and read the one rotation they make.",
+    concepts=("Euler angles", "Gimbal lock"),
+    objectives=(
+        Objective("Predict the orientation that three turns in a given order produce", "Apply"),
+        Objective(
+            "Tell intrinsic from extrinsic turns, and order the matrices of the product accordingly",
+            "Analyze",
+        ),
+        Objective("Find the middle angle at which an order locks, and say what is lost there", "Analyze"),
+    ),
+    params=EulerParams,
+    solve=solve,
+    scene=EulerScene,
+    readouts=readouts,
+    describe=describe,
+    view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.9),
+    actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),
+    states={
+        "zero": {"yaw": 0, "pitch": 0, "roll": 0},
+        "lock up": {"pitch": 90},
+        "lock down": {"pitch": -90},
+        "proper lock 0": {"order": "zxz", "pitch": 0},
+        "proper lock 180": {"order": "zyz", "pitch": 180},
+        "middle is yaw": {"order": "xzy", "yaw": 90},
+        "extrinsic": {"frame": "extrinsic", "order": "xyz", "progress": 1.5},
+        "half-way": {"progress": 1.5},
+    },
+)

@@ -1,0 +1,110 @@
+"""Parameters of the sim."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from geometry import euler
+from sims.kit.params import Params, choice, number
+
+Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz"]
+NEAR_LOCK = 15.0
+"""Degrees from lock within which the sim warns."""
+TAIT_BRYAN = {"z": "yaw", "y": "pitch", "x": "roll"}
+TURNS = {
+    order: ("yaw", "pitch", "roll")
+    if order[0] == order[2]
+    else (TAIT_BRYAN[order[0]], TAIT_BRYAN[order[1]], TAIT_BRYAN[order[2]])
+    for order in euler.ORDERS
+}
+NAMES = {"yaw": "Yaw ψ", "pitch": "Pitch θ", "roll": "Roll φ"}
+PROPER = {"yaw": "First α", "pitch": "Second β", "roll": "Third γ"}
+
+
+class EulerParams(Params):
+    """State of the sim."""
+
+    order: Order = choice(
+        "zyx", title="Order", description="Axes of the three turns, in the order in which they are made",
+        labels={o: o.upper() for o in euler.ORDERS},
+    )  # fmt: skip
+    frame: Literal["intrinsic", "extrinsic"] = choice(
+        "intrinsic", title="Frame", description="Turns about the aircraft's own axes, or about the world's",
+        labels={"intrinsic": "Intrinsic: own axes", "extrinsic": "Extrinsic: fixed axes"},
+    )  # fmt: skip
+    yaw: float = number(
+        30,
+        -180,
+        180,
+        step=1,
+        unit="°",
+        title="Yaw",
+        symbol="ψ",
+        description="Angle about Z; first angle of a proper Euler order",
+    )
+    pitch: float = number(
+        20,
+        -90,
+        180,
+        step=1,
+        unit="°",
+        title="Pitch",
+        symbol="θ",
+        description="Angle about Y; second angle of a proper Euler order",
+    )
+    roll: float = number(
+        10,
+        -180,
+        180,
+        step=1,
+        unit="°",
+        title="Roll",
+        symbol="φ",
+        description="Angle about X; third angle of a proper Euler order",
+    )
+    progress: float = number(
+        3,
+        0,
+        3,
+        step=0.01,
+        title="Progress",
+        description="How much of the sequence is applied: 1 is the first turn, 3 all of it",
+    )
+
+    @property
+    def proper(self) -> bool:
+        return self.order[0] == self.order[2]
+
+    @property
+    def names(self) -> tuple[str, str, str]:
+        """Parameter names of the three turns, in the order of the turns."""
+        return TURNS[self.order]
+
+    @property
+    def angles(self) -> tuple[float, float, float]:
+        """First, second and third angle in degrees."""
+        a, b, c = (getattr(self, name) for name in self.names)
+        return a, b, c
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        if name == "pitch":
+            return (0.0, 180.0) if self.proper else (-90.0, 90.0)
+        return super().bounds(name)
+
+    def label(self, name: str) -> str:
+        if name not in NAMES:
+            return super().label(name)
+        k = self.names.index(name)
+        primes = "" if self.frame == "extrinsic" else "′" * k
+        return f"{(PROPER if self.proper else NAMES)[name]} · {self.order[k].upper()}{primes}"
+
+    def regions(self) -> dict[str, list[tuple[float, float]]]:
+        """Where the middle angle is near lock, for the slider's track."""
+        name = self.names[1]
+        low, high = self.bounds(name)
+        return {name: [(max(low, v - NEAR_LOCK), min(high, v + NEAR_LOCK)) for v in self.locks]}
+
+    @property
+    def locks(self) -> tuple[float, float]:
+        """Values of the middle angle, in degrees, at which the order locks."""
+        return (0.0, 180.0) if self.proper else (-90.0, 90.0)

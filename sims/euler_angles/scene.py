@@ -1,0 +1,102 @@
+"""An aircraft in its three turns: each turn in the frame before it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from sims.euler_angles.params import NEAR_LOCK, EulerParams
+from sims.euler_angles.solution import EulerSolution, Turn
+from sims.kit import bodies
+from sims.kit.readout import quantity
+from sims.kit.stage import Stage
+
+
+class EulerScene:
+    """World frame, ghost frames after one and two turns, the aircraft, and an arc for each turn."""
+
+    def __init__(self, stage: Stage) -> None:
+        stage.ground(size=6.0, height=-1.3)
+        stage.axes("/world", 1.55, radius=0.008)
+        parents = ["/turn1", "/turn1/turn2", "/turn1/turn2/turn3"]
+        self.frames = [
+            stage.axes(parents[0], 1.15, ghost=True, letters=None),
+            stage.axes(parents[1], 1.15, ghost=True, letters=None),
+            stage.axes(parents[2], 1.15, radius=0.02, letters=("x", "y", "z")),
+        ]
+        body = bodies.aircraft()
+        grey = (96, 108, 122) if stage.palette.dark else (201, 208, 216)
+        stage.mesh(f"{parents[2]}/hull", body["hull"], grey)
+        stage.mesh(f"{parents[2]}/mark", body["mark"], "held")
+        self.stage = stage
+        self.befores = ["", *parents[:2]]
+        self.arcs: list[Any] = []
+        self.order = ""
+
+    def draw(self, p: EulerParams, s: EulerSolution) -> None:
+        if p.order != self.order:
+            self._rebuild(p)
+        for frame, arc, turn in zip(self.frames, self.arcs, s.turns, strict=True):
+            frame.pose(turn.wxyz)
+            arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
+
+    def _rebuild(self, p: EulerParams) -> None:
+        self.order = p.order
+        for arc in self.arcs:
+            arc.remove()
+        self.arcs = [
+            Arc(self.stage, f"{before}/arc{k}", axis, 1.5 - 0.3 * k, p.locks if k == 1 else ())
+            for k, (before, axis) in enumerate(zip(self.befores, p.order, strict=True))
+        ]
+
+
+class Arc:
+    """The arc of one turn with its label, its axis while the turn is being made, and the region near lock."""
+
+    def __init__(self, stage: Stage, name: str, axis: str, radius: float, locks: tuple[float, ...]) -> None:
+        self.node = stage.group(name)
+        self.radius = radius
+        dash = {"x": None, "y": (0.14, 0.05), "z": (0.06, 0.045)}[axis]
+        self.line = stage.lines(f"{name}/line", [(radius, 0, 0), (radius, 0, 0.001)], axis, width=4.0, dash=dash)
+        self.start = stage.lines(f"{name}/start", [(0, 0, 0), (radius, 0, 0)], "ghost", width=1.2)
+        self.end = stage.lines(f"{name}/end", [(0, 0, 0), (radius, 0, 0)], axis, width=1.5)
+        self.axis = stage.lines(f"{name}/axis", [(0, 0, -1.7), (0, 0, 1.7)], axis, width=5.0)
+        self.axis.show(False)
+        # the outermost label hangs lower, clear of the next one where the two arcs meet
+        self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
+        self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
+        self.locks = locks
+        self.shown: tuple[Turn, bool] | None = None
+        for lock in locks:
+            region = stage.lines(f"{name}/lock{lock:.0f}", np.zeros((2, 3)), "warn", width=3.0, dash=(0.03, 0.03))
+            region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
+
+    def draw(self, turn: Turn, *, near_lock: bool) -> None:
+        if self.shown == (turn, near_lock):
+            return
+        self.shown = (turn, near_lock)
+        radians = math.radians(turn.applied)
+        self.node.pose(turn.seen)
+        visible = abs(turn.applied) > 0.5
+        self.line.arc(self.radius, radians)
+        self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
+        for part in (self.line, self.start, self.end, self.label):
+            part.show(visible)
+        self.axis.show(turn.current)
+        self.label.pose(
+            position=(
+                1.1 * self.radius * math.cos(radians / 2),
+                1.1 * self.radius * math.sin(radians / 2),
+                0.0,
+            )
+        )
+        self.label.text(f"{turn.name} {quantity(turn.applied, '°', 0)}")
+        if self.warning is not None:
+            lock = math.radians(min(self.locks, key=lambda v: abs(v - turn.applied)))
+            self.warning.show(near_lock)
+            self.warning.pose(position=(1.12 * self.radius * math.cos(lock), 1.12 * self.radius * math.sin(lock), 0.0))
+
+    def remove(self) -> None:
+        self.node.handle.remove()

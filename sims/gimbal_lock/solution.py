@@ -1,0 +1,104 @@
+"""The mathematics of a state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from geometry import euler, gimbal, quaternion
+from geometry.arrays import Array
+from geometry.rotations import matrix_to_axis_angle
+from sims.gimbal_lock.params import NEAR, GimbalParams
+from sims.kit.stage import Quaternion
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """At lock: the one combination of yaw and roll that counts, yaw − `end` · roll, in degrees, and R from it."""
+
+    end: int
+    angle: float
+    R: Array
+
+
+@dataclass(frozen=True)
+class Ghost:
+    """The marked orientation: how far, in degrees, the aircraft must turn to it, about which axis of the world."""
+
+    wxyz: Quaternion
+    angle: float
+    axis: Array
+    rates: Array
+    """Ring rates that turn the aircraft towards it by 1°/s, or come nearest to that; outer, middle, inner."""
+
+
+@dataclass(frozen=True)
+class GimbalSolution:
+    """Columns of `axes`: outer, middle, inner ring axis in the world. What doesn't exist is None.
+
+    `rings`: poses of the rings, each in the frame of the one outside it. `reach`: the frame of the ellipsoid of
+    reachable angular velocities, whose half-axes are the singular values; `weakest_axis` is the last of its axes, and
+    `rates` the ring rates that turn about it at 1°/s, or, at lock, come nearest to that.
+    """
+
+    R: Array
+    axes: Array
+    singular_values: Array
+    dof: int
+    lost_axis: Array | None
+    conditioning: float
+    weakest_axis: Array
+    rates: Array
+    reduced: Reduced | None
+    ghost: Ghost | None
+    rings: tuple[Quaternion, Quaternion, Quaternion]
+    reach: Quaternion
+
+    @property
+    def near(self) -> bool:
+        """Whether a turn about the weakest axis is hard, but not impossible."""
+        return self.dof == 3 and self.singular_values.item(2) < NEAR
+
+    @property
+    def effort(self) -> float:
+        """The fastest of the `rates`."""
+        return float(max(map(abs, self.rates.tolist())))
+
+
+def solve(p: GimbalParams) -> GimbalSolution:
+    """All the mathematics of a state."""
+    yaw, pitch, roll = map(math.radians, p.angles)
+    R = euler.euler_to_matrix((yaw, pitch, roll), "zyx", "intrinsic")
+    directions, lengths = gimbal.ellipsoid(yaw, pitch)
+    weakest = directions[:, 2]
+    lock = gimbal.at_lock(yaw, pitch, roll)
+    return GimbalSolution(
+        R=R,
+        axes=gimbal.ring_axes(yaw, pitch),
+        singular_values=lengths,
+        dof=int(gimbal.degrees_of_freedom(lengths)),
+        lost_axis=gimbal.lost_axis(yaw, pitch),
+        conditioning=float(gimbal.conditioning(pitch)),
+        weakest_axis=weakest,
+        rates=gimbal.ring_rates(yaw, pitch, weakest),
+        reduced=None if lock is None else Reduced(lock.end, math.degrees(lock.angle), lock.R),
+        ghost=_ghost(p, R) if p.show_ghost else None,
+        rings=(
+            quaternion.axis_quaternion("z", yaw),
+            quaternion.axis_quaternion("y", pitch),
+            quaternion.axis_quaternion("x", roll),
+        ),
+        reach=_floats(quaternion.from_matrix(directions)),
+    )
+
+
+def _ghost(p: GimbalParams, R: Array) -> Ghost:
+    marked = euler.euler_to_matrix([math.radians(a) for a in p.ghost], "zyx", "intrinsic")
+    axis, angle = matrix_to_axis_angle(marked @ R.T)
+    rates = gimbal.ring_rates(math.radians(p.yaw), math.radians(p.pitch), axis)
+    return Ghost(_floats(quaternion.from_matrix(marked)), math.degrees(float(angle)), axis, rates)
+
+
+def _floats(q: Array) -> Quaternion:
+    w, x, y, z = q.tolist()
+    return w, x, y, z

@@ -1,0 +1,79 @@
+"""What buttons and handles do to a state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from geometry import quaternion
+from geometry.arrays import Array
+from sims.kit.params import LONGEST_VALUE, spell
+from sims.kit.sim import Step
+from sims.quaternion.params import MOST_TURNS, REACH, QuaternionParams, Triple
+
+DIGITS = 12
+"""Decimals of the start to which all turns are taken back."""
+SECONDS = 1.2
+
+
+def hold_tip(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """The axis towards a place in the world; at the origin it stays."""
+    length = math.hypot(*place)
+    return {} if length < 0.05 else {"axis": _rounded(v / length for v in place)}
+
+
+def hold_point(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """p at a place in the world."""
+    return {"point": _rounded(min(max(v, -REACH), REACH) for v in place)}
+
+
+def _rounded(place: Any) -> Triple:
+    x, y, z = (round(v, 3) + 0.0 for v in place)
+    return x, y, z
+
+
+def compose(p: QuaternionParams) -> dict[str, Any]:
+    """The turn becomes part of the start: start = q ⊗ start. Axis and angle stay, so that it can be made again."""
+    made = [*p.turns, (*p.axis, p.angle)][-MOST_TURNS:]
+    while len(spell(sum(made, ()))) > LONGEST_VALUE:  # what doesn't fit in a link can't be kept
+        made = made[1:]
+    start = _turned(quaternion.normalize(p.start), p.axis, p.angle)
+    return {"start": tuple(start.tolist()), "history": sum(made, ())}
+
+
+def undo(p: QuaternionParams) -> dict[str, Any]:
+    """The last turn is taken back, and is the present one again."""
+    if not p.turns:
+        return {}
+    start = quaternion.normalize(p.start)
+    for *axis, angle in reversed(p.turns):
+        start = _turned(start, axis, -angle)
+    start = np.round(start, DIGITS) + 0.0  # where the first turn began, without the rounding of all of them
+    *before, (*axis, angle) = p.turns
+    for *other, part in before:
+        start = _turned(start, other, part)
+    return {
+        "start": tuple(start.tolist()), "axis": tuple(axis), "angle": angle, "history": p.history[:-4], "t": 1.0,
+    }  # fmt: skip
+
+
+def _turned(start: Array, axis: Any, angle: float) -> Array:
+    """A start at length one after a turn; within the bounds of the parameter."""
+    total = quaternion.multiply(quaternion.from_axis_angle(axis, math.radians(angle)), start)
+    return np.clip(total, -1.0, 1.0) + 0.0
+
+
+def play(p: QuaternionParams) -> Iterator[Step]:
+    """The object goes from start to target."""
+    yield Step({"t": 0.0}, 0.0)
+    yield Step({"t": 0.0}, 0.25)
+    yield Step({"t": 1.0}, SECONDS)
+
+
+def apply(p: QuaternionParams) -> Iterator[Step]:
+    """The object turns to the target, which becomes the start; there it stays, with no angle to go."""
+    yield from play(p)
+    yield Step({**compose(p), "angle": 0.0, "t": 1.0}, 0.0)

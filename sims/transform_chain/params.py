@@ -1,0 +1,83 @@
+"""Parameters of the sim."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal, Self
+
+from pydantic import model_validator
+
+from sims.kit.params import Params, choice, disagreement, letters, numbers, optional, vector
+
+Place = tuple[float, float, float]
+MOST = 8
+LISTS = ("angles", "lengths", "axes")
+FAR, FARTHEST = (-20.0, -20.0, -20.0), (20.0, 20.0, 20.0)
+
+
+class ChainParams(Params):
+    """State of the sim."""
+
+    angles: tuple[float, ...] = numbers(
+        (30.0, 40.0, -30.0), -180, 180, most=MOST, step=0.5, unit="°", title="Joint angles", entry="Joint {} angle",
+        description="How far each joint turns about its axis, counter-clockwise as seen from the axis's tip",
+    )  # fmt: skip
+    lengths: tuple[float, ...] = numbers(
+        (1.0, 0.8, 0.5), 0, 2, most=MOST, step=0.01, unit="m", title="Link lengths", entry="Link {} length",
+        group="Link lengths", description="How far each link leads along the x axis of its frame; 0 is a turn alone",
+    )  # fmt: skip
+    axes: str = letters(
+        "zyy", most=MOST, labels={"x": "x: twist", "y": "y: up and down", "z": "z: sideways"}, title="Joint axes",
+        entry="Joint {} axis", group="Joint axes",
+        description="The axis of the frame before a joint that the joint turns about",
+    )  # fmt: skip
+    show: Literal["individual", "composed"] = choice(
+        "individual", title="Transforms",
+        description="Arrows and matrices: from each frame to the next, or from the world to each frame",
+        labels={"individual": "Individual: frame to frame", "composed": "Composed: from the world"},
+    )  # fmt: skip
+    swap: int | None = optional(
+        1, MOST - 1, title="Swap transforms", words="{0} ↔ {1}",
+        description="Compare with the arm whose two neighbouring transforms are multiplied in the other order",
+    )  # fmt: skip
+    trace: int | None = optional(
+        1, MOST, title="Trace of joint", words="Joint {0}",
+        description="The circle that the end effector describes as this joint turns; follows the joint that you move",
+    )  # fmt: skip
+    point: Place = vector(
+        (0.1, 0.2, 0.0), -1, 1, step=0.01, unit="m", title="Point p", group="A point on the end effector",
+        description="Coordinates in the end effector's frame of the point that is taken through the chain",
+    )  # fmt: skip
+    target: Place | None = vector(
+        None, FAR, FARTHEST, step=0.01, unit="m", control="none", title="Target",
+        description="A place to reach with the end effector; absent is none",
+    )  # fmt: skip
+    pull: Place | None = vector(
+        None, FAR, FARTHEST, step=0.01, unit="m", control="none", title="Pull",
+        description="Where the end effector was last dragged to, if the arm doesn't get there; absent otherwise",
+    )  # fmt: skip
+
+    @property
+    def count(self) -> int:
+        """Number of joints."""
+        return len(self.axes)
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        if name == "swap":
+            return 1, self.count - 1
+        return (1, self.count) if name == "trace" else super().bounds(name)
+
+    def moved(self, changes: Mapping[str, Any]) -> Self:
+        """A joint that is moved leaves its trace; where the hand pulled before says nothing then."""
+        turned = [int(k) + 1 for field, _, k in (name.partition(".") for name in changes) if field == "angles" and k]
+        follows = {"trace": turned[0]} if turned and "trace" not in changes else {}
+        arm = {name.partition(".")[0] for name in changes} & {*LISTS}
+        return super().moved({**({"pull": None} if arm else {}), **follows, **changes})
+
+    @model_validator(mode="after")
+    def _as_many_of_each(self) -> Self:
+        if len({len(getattr(self, name)) for name in LISTS}) > 1:
+            got = ", ".join(f"{len(getattr(self, name))} {name}" for name in LISTS)
+            words = f"as many angles and lengths as letters in axes, one of each for every joint; got {got}"
+            raise disagreement([name for name in LISTS if name in self.model_fields_set], words)
+        return self

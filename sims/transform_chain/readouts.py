@@ -1,0 +1,134 @@
+"""Read-outs, and a sentence for people who listen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.transform_chain.actions import known
+from sims.transform_chain.params import MOST, ChainParams
+from sims.transform_chain.solution import ENOUGH, ChainSolution
+
+SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def sub(number: int) -> str:
+    """A number as a subscript."""
+    return str(number).translate(SUBSCRIPTS)
+
+
+def transform_name(show: str, i: int) -> str:
+    """The i-th transform, from 1: T₁₂, or T₀₂ where they are composed."""
+    return f"T{sub(i - 1 if show == 'individual' else 0)}{sub(i)}"
+
+
+def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
+    """Numbers beside the scene."""
+    yield from _status(p, s)
+    n = p.count
+    product = "".join(f"T{sub(i)}{sub(i + 1)}" for i in range(n))
+    yield Formula(f"World from end effector: {product}", symbol("T", f"0{n}"), mathml(s.end_effector))
+    yield Formula("End effector from world: its inverse (Rᵀ, −Rᵀt)", symbol("T", f"{n}0"), mathml(s.inverse))
+    if s.swapped is not None:
+        yield from _swapped(p, s)
+    yield _through(s)
+    yield from _kept(s)
+    yield from _freedom(s)
+    words = "From each frame to the next" if p.show == "individual" else "From the world to each frame"
+    yield Note(f"{words}:")
+    for i, T in enumerate(s.individual if p.show == "individual" else s.composed, start=1):
+        what = (
+            f"R{p.axes[i - 1]}({quantity(p.angles[i - 1], '°', 1)}), then {quantity(p.lengths[i - 1], 'm', 2)} along x"
+        )
+        if p.show == "composed":
+            what = "".join(f"T{sub(k)}{sub(k + 1)}" for k in range(i))
+        yield Formula(what, symbol("T", f"{i - 1 if p.show == 'individual' else 0}{i}"), mathml(T))
+
+
+def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
+    if s.short is not None:
+        yield Note(_short(s, s.short), "warn")
+    if s.mobility == 0:
+        yield Note("No joint moves the end effector: it lies on every axis.", "near")
+    elif s.singular:
+        left = s.mobility - 1 if s.lost is not None else None
+        ways = f" in {left} of {s.mobility} directions only" if left is not None else " in fewer directions"
+        along = f", not along {_place(s.lost.tolist())}" if s.lost is not None else ""
+        yield Note(f"Singular pose: the joints can move the end effector{ways}{along}.", "warn")
+    elif s.near_singular:
+        yield Note("Near a singular pose: in one direction the end effector moves only a little.", "near")
+    if p.target is not None and s.target_distance is not None:
+        reached = "reached" if s.target_distance <= ENOUGH else f"{quantity(s.target_distance, 'm')} away"
+        yield Note(f"Target {_place(p.target)} m: {reached}.")
+    if (arm := known(p)) is not None:
+        yield Note(arm.says)
+    if p.count == MOST:
+        yield Note(f"{MOST} links: the longest arm here.")
+
+
+def _short(s: ChainSolution, metres: float) -> str:
+    gap = quantity(metres, "m")
+    if s.pull_outside:
+        least, greatest = (quantity(r, "m", 2) for r in s.reach)
+        return f"Out of reach: this is as near as it gets, {gap} short. The arm reaches from {least} to {greatest}."
+    return f"Not reached: from here this is as near as it gets, {gap} short. Another posture may come nearer."
+
+
+def _place(place: tuple[float, ...] | list[float]) -> str:
+    return "(" + ", ".join(figure(v, 2) for v in place) + ")"
+
+
+def _swapped(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
+    assert s.swapped is not None
+    assert p.swap is not None
+    i, a, b = p.swap, p.axes[p.swap - 1], p.axes[p.swap]
+    names = f"T{sub(i - 1)}{sub(i)} and T{sub(i)}{sub(i + 1)}"
+    turned = quantity(s.swapped.angle, "°", 1)
+    if s.swapped.distance < 1e-9 and s.swapped.angle < 1e-6:
+        text = "the end effector stays where it is"
+    elif s.swapped.angle < 1e-6:
+        text = f"the end effector is {quantity(s.swapped.distance, 'm')} away, turned the same way"
+    else:
+        text = f"the end effector is {quantity(s.swapped.distance, 'm')} away, turned by {turned}"
+    if a == b:
+        why = (
+            f"Both turn about {a}: turns about one axis commute, steps along links don’t (set both lengths to 0 to see)"
+        )
+    else:
+        why = f"They turn about {a} and {b}: turns about different axes don’t commute"
+    yield Note(f"{names} swapped: {text}. {why}.")
+    yield Formula("End effector with these two swapped", symbol("T", "swapped"), mathml(s.swapped_end_effector))
+
+
+def _through(s: ChainSolution) -> Table:
+    n = len(s.through) - 1
+    names = [f"frame {n} (end)", *(f"frame {i}" for i in range(n - 1, 0, -1)), "frame 0 (world)"]
+    rows = [[name, *(figure(v) for v in point)] for name, point in zip(names, s.through.tolist(), strict=True)]
+    return Table("Point p, frame by frame: each row is T times the one above", [["", "x", "y", "z", "w"], *rows])
+
+
+def _kept(s: ChainSolution) -> Iterator[Readout]:
+    (own, world), angles = s.kept
+    rows = [["", "in frame n", "in the world"], ["distance", quantity(own, "m"), quantity(world, "m")]]
+    if angles is not None:
+        rows.append(["angle to x", *(quantity(a, "°", 1) for a in angles)])
+    yield Table("Kept by the transform: p as the end effector sees it", rows)
+
+
+def _freedom(s: ChainSolution) -> Iterator[Readout]:
+    yield Formula("Geometric Jacobian: velocity, then turning, for each joint", symbol("J"), mathml(s.jacobian, 2))
+    yield Formula("Singular values of its velocity rows", symbol("σ"), row(s.singular_values.tolist()), "m/rad")
+    kinds = {0: "", 1: ": σ₁", 2: ": σ₁σ₂", 3: ": σ₁σ₂σ₃"}
+    yield Formula(f"Manipulability{kinds[s.mobility]}", symbol("w"), mathml(s.manipulability))
+
+
+def describe(p: ChainParams, s: ChainSolution) -> str:
+    """One sentence for people who listen."""
+    turns = ", ".join(f"{axis} {figure(a, 0)}°" for axis, a in zip(p.axes, p.angles, strict=True))
+    x, y, z = (figure(v, 2) for v in s.end)
+    pose = "; singular pose" if s.singular else ""
+    short = "" if s.short is None else f"; {'out of reach' if s.pull_outside else 'not reached'}"
+    far = s.target_distance
+    target = "" if far is None else f"; target {'reached' if far <= ENOUGH else figure(far, 2) + ' metres away'}"
+    joints = "1 joint" if p.count == 1 else f"{p.count} joints"
+    return f"Arm of {joints}, {turns}; end effector at {x}, {y}, {z} metres{pose}{short}{target}."

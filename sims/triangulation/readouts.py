@@ -1,0 +1,123 @@
+"""Read-outs, and a sentence for people who listen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.triangulation.params import NAMES, TriangulationParams
+from sims.triangulation.solution import SAMPLES, TriangulationSolution
+
+VERY_FAR = 1e4
+"""Metres of depth from which on coordinates say nothing."""
+TROUBLE = {
+    "parallel": "Parallel rays: no finite point. The disparity is zero, as for something infinitely far away.",
+    "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind the cameras, {behind}.",
+    "undefined": "The pixels are too far away to mean anything.",
+}
+
+
+def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
+    """Numbers beside the scene."""
+    yield from _status(p, s)
+    if s.point is not None and s.point[1] < VERY_FAR:
+        yield Formula(f"Point by the {NAMES[p.method]} method", symbol("X"), row(s.point.tolist()), "m")
+    yield _methods(p, s)
+    yield _images(p, s)
+    yield Formula("Disparity: left u minus right u", symbol("d"), mathml(s.disparity, 2), "px")
+    if s.depth_from_disparity is not None:
+        yield Formula(
+            "Depth from disparity", f"{symbol('Z')}<mo>=</mo>{FB_OVER_D}", mathml(s.depth_from_disparity), "m"
+        )
+    yield Formula("Gap between the rays", symbol("g"), mathml(100.0 * s.ray_gap, 2), "cm")
+    yield Formula("Angle between the rays (parallax)", symbol("α"), mathml(s.parallax_angle, 2), "°")
+    yield from _uncertainty(p, s)
+    if p.noise > 0.0:
+        yield _noise(p, s)
+
+
+FB_OVER_D = '<mstyle displaystyle="true"><mfrac><mrow><mi>f</mi><mi>b</mi></mrow><mi>d</mi></mfrac></mstyle>'
+
+
+def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
+    if s.status != "found":
+        behind = (
+            f"{quantity(-s.closest_points.item(0, 1), 'm', 2)} away" if s.closest_points is not None else "far away"
+        )
+        yield Note(TROUBLE[s.status].format(behind=behind), "warn")
+    elif s.vague:
+        yield Note("Almost parallel rays: a standard deviation of the depth is larger than the depth itself.", "warn")
+    elif s.depth is not None and s.depth_sigma is not None and 3.0 * s.depth_sigma > s.depth:
+        yield Note("Very unsure: three standard deviations of the depth reach back to the cameras.", "near")
+    others = [NAMES[m] for m in NAMES if m != p.method and s.by_method[m].status != s.status]
+    if others:
+        yield Note(f"The methods disagree on whether there is a point: see {' and '.join(others)} below.", "near")
+
+
+def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
+    rows = [("method", "left", "right", "rms", "apart")]
+    for name, words in NAMES.items():
+        found = s.by_method[name]
+        errors = (found.reprojection_left, found.reprojection_right, found.reprojection_rms)
+        apart = found.status if found.point is None else "–"
+        if found.point is not None and s.point is not None:
+            apart = _length(math.dist(found.point, s.point))
+        cells = [figure(e, 3) if e is not None else "–" for e in errors]
+        rows.append((words, cells[0], cells[1], cells[2], apart))
+    true = () if s.true_point is None else ("true",)
+    if s.true_point is not None:
+        a, b = math.dist(s.measured_left, p.left_uv), math.dist(s.measured_right, p.right_uv)
+        cells = [figure(e, 3) for e in (a, b, math.hypot(a, b) / math.sqrt(2.0))]
+        apart = "–" if s.point is None else _length(math.dist(s.true_point, s.point))
+        rows.append(("true point", cells[0], cells[1], cells[2], apart))
+    words = "Reprojection error in pixels, and distance from the result"
+    return Table(words, rows, tuple(NAMES), p.method, lights=true)
+
+
+def _images(p: TriangulationParams, s: TriangulationSolution) -> Table:
+    rows = [("point", "u", "v")]
+    for name, (u, v) in (("L, left", s.measured_left), ("R, right", s.measured_right)):
+        rows.append((name, figure(u, 2), figure(v, 2)))
+    words = "Image points in pixels, with their noise" if p.noise > 0.0 else "Image points in pixels"
+    return Table(words, rows, lights=("left", "right"))
+
+
+def _length(metres: float) -> str:
+    return quantity(1000.0 * metres, "mm", 1) if metres < 10.0 else quantity(metres, "m", 0)
+
+
+def _uncertainty(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
+    if s.covariance is None or s.ellipsoid_axes is None or s.depth_sigma is None or s.vague:
+        return
+    assumed = f"for {quantity(s.sigma_px, 'px', 2)} of noise"
+    yield Formula(f"Standard deviation of the depth, {assumed}", symbol("σ", "Z"), mathml(s.depth_sigma), "m")
+    yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
+    yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
+
+
+def _noise(p: TriangulationParams, s: TriangulationSolution) -> Note:
+    pairs = ((s.measured_left, p.left_uv), (s.measured_right, p.right_uv))
+    words = [f"({figure(m[0] - h[0], 2)}, {figure(m[1] - h[1], 2)})" for m, h in pairs]
+    lost = (
+        ""
+        if len(s.cloud) == SAMPLES or s.point is None
+        else f" {SAMPLES - len(s.cloud)} of {SAMPLES} samples have no point."
+    )
+    return Note(f"Sample {p.seed}: noise left {words[0]}, right {words[1]} px.{lost}")
+
+
+def describe(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """One sentence."""
+    base = f"baseline {quantity(p.baseline, 'm', 2)}"
+    if s.point is None:
+        return f"{TROUBLE[s.status].split(':')[0]}; disparity {quantity(s.disparity, 'px', 1)}, {base}."
+    if s.point[1] >= VERY_FAR or s.depth_sigma is None:
+        return f"Almost parallel rays: the point is kilometres away, its depth unknown; {base}."
+    x, y, z = (figure(v, 2) for v in s.point.tolist())
+    noise = f"sample {p.seed} of {quantity(p.noise, 'px', 2)} noise; " if p.noise else ""
+    name = NAMES[p.method][0].upper() + NAMES[p.method][1:]
+    return (
+        f"{name} point {x}, {y}, {z} m; depth plus or minus {quantity(s.depth_sigma, 'm')};"
+        f" rays miss by {quantity(100.0 * s.ray_gap, 'cm', 1)}; {noise}{base}."
+    )

@@ -1,0 +1,207 @@
+"""The mathematics of a state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from geometry import quaternion
+from geometry import triangulation as tri
+from geometry.arrays import Array
+from geometry.camera import Camera, parallel_rig
+from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
+from sims.triangulation.params import HEIGHT, WIDTH, Method, Pixel, TriangulationParams
+
+METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
+    "dlt": tri.triangulate_dlt,
+    "midpoint": tri.triangulate_midpoint,
+    "optimal": tri.triangulate_optimal,
+}
+SAMPLES = 300
+PICTURE_WIDTH = 0.4
+"""Metres that a picture is wide where it stands in the scene."""
+BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
+"""Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
+UNSEEN = 1e-9
+"""Pixels of noise up to which nothing of it is seen."""
+
+
+@dataclass(frozen=True)
+class MethodResult:
+    """What one method finds; pixels and errors of its point in both pictures."""
+
+    point: Array | None
+    status: str
+    reprojection_left: float | None = None
+    reprojection_right: float | None = None
+    reprojection_rms: float | None = None
+    pixel_left: Pixel | None = None
+    pixel_right: Pixel | None = None
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Both cameras, their F, and the corners of a picture in its camera's axes where it stands in the scene."""
+
+    left: Camera
+    right: Camera
+    F: Array
+    corners: Array
+    size: float
+
+
+@dataclass(frozen=True)
+class TriangulationSolution:
+    """What doesn't exist is None. `covariance` and what follows from it are for `sigma_px` pixels of noise."""
+
+    point: Array | None
+    status: str
+    by_method: Mapping[Method, MethodResult]
+    ray_gap: float
+    closest_points: Array | None
+    disparity: float
+    depth_from_disparity: float | None
+    sigma_px: float
+    covariance: Array | None
+    ellipsoid_axes: Array | None
+    ellipsoid_orientation: Array | None
+    """Quaternion that turns X, Y, Z to its axes."""
+    depth_sigma: float | None
+    parallax_angle: float
+    in_front: bool
+    measured_left: Pixel
+    measured_right: Pixel
+    line_left: Array
+    line_right: Array
+    target: Array | None
+    """The point without noise, which the learner holds."""
+    true_point: Array | None
+    """The point that the pixels came from: with noise, and where the rays without it meet."""
+    cloud: Array
+    """What other noise of the same size would have given; empty without noise."""
+    sight_left: Pixel
+    sight_right: Pixel
+    """x and y of the lines of sight at depth 1, in each camera's axes."""
+
+    @property
+    def depth(self) -> float | None:
+        """How far in front of the cameras the point is."""
+        return None if self.point is None else float(self.point[1])
+
+    @property
+    def vague(self) -> bool:
+        """The point exists, but a standard deviation of its depth is as large as the depth."""
+        return self.depth is not None and (self.depth_sigma is None or self.depth_sigma >= self.depth)
+
+
+def solve(p: TriangulationParams) -> TriangulationSolution:
+    """All the mathematics of a state."""
+    cameras = rig(p.baseline, p.focal)
+    left, right = measured(p)
+    found = {name: method(cameras.left, cameras.right, left, right) for name, method in METHODS.items()}
+    chosen, middle = found[p.method], found["midpoint"]
+    assert isinstance(middle, tri.Midpoint)
+    by_method: dict[Method, MethodResult] = {name: _result(cameras, each, left, right) for name, each in found.items()}
+    point = by_method[p.method].point
+    disparity = float(tri.disparity(left, right))
+    target = point if p.noise == 0.0 else _point(METHODS[p.method](cameras.left, cameras.right, p.left_uv, p.right_uv))
+    return TriangulationSolution(
+        point=point,
+        status=by_method[p.method].status,
+        by_method=by_method,
+        ray_gap=float(middle.gap),
+        closest_points=_existing(middle.closest),
+        disparity=disparity,
+        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal))),
+        **_uncertainty(cameras, point, p.noise if p.noise > UNSEEN else 1.0),
+        parallax_angle=math.degrees(float(chosen.parallax)),
+        in_front=bool(chosen.in_front),
+        measured_left=left,
+        measured_right=right,
+        line_left=epipolar_line_left(cameras.F, right),
+        line_right=epipolar_line_right(cameras.F, left),
+        target=target,
+        true_point=target if p.noise > 0.0 and p.left_uv[1] == p.right_uv[1] else None,
+        cloud=cloud(p.baseline, p.focal, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
+        sight_left=_pair(cameras.left.normalized(left)),
+        sight_right=_pair(cameras.right.normalized(right)),
+    )
+
+
+@lru_cache(maxsize=256)
+def rig(baseline: float, focal: float) -> Rig:
+    """The cameras of a baseline in metres and a focal length in pixels."""
+    left, right = parallel_rig(baseline, focal)
+    size, width = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
+    upright = Camera(left.K, np.eye(4))
+    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * width * focal / WIDTH)
+    return Rig(left, right, fundamental(left, right), corners, size)
+
+
+def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
+    """The left and the right pixel with their noise."""
+    if p.noise == 0.0:
+        return p.left_uv, p.right_uv
+    (du, dv), (eu, ev) = _unit_noise(p.seed)
+    left, right, s = p.left_uv, p.right_uv, p.noise
+    return (left[0] + s * du, left[1] + s * dv), (right[0] + s * eu, right[1] + s * ev)
+
+
+@lru_cache(maxsize=1024)
+def _unit_noise(seed: int) -> tuple[Pixel, Pixel]:
+    left, right = tri.pixel_noise(1, seed)[0]
+    return _pair(left), _pair(right)
+
+
+NO_POINTS: Array = np.empty((0, 3))
+
+
+@lru_cache(maxsize=64)
+def cloud(baseline: float, focal: float, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
+    """Points (n, 3) that pixels with as much noise again would give, as far as they exist; none without noise."""
+    if noise == 0.0:
+        return NO_POINTS
+    cameras = rig(baseline, focal)
+    points = tri.monte_carlo(cameras.left, cameras.right, left, right, noise, SAMPLES, seed)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -> MethodResult:
+    status = tri.Status(int(found.status)).name.lower()
+    if status != "found":
+        return MethodResult(None, status)
+    at_left, at_right = (_pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
+    a, b = math.dist(at_left, left), math.dist(at_right, right)
+    return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
+
+
+def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, Any]:
+    names = ("covariance", "ellipsoid_axes", "ellipsoid_orientation", "depth_sigma")
+    known = None if point is None else _existing(tri.covariance((cameras.left, cameras.right), point, sigma))
+    if known is None:
+        return {"sigma_px": sigma, **dict.fromkeys(names)}
+    lengths, directions = tri.ellipsoid_axes(known)
+    values = known, lengths, quaternion.from_matrix(directions), math.sqrt(known.item(1, 1))
+    return {"sigma_px": sigma, **dict(zip(names, values, strict=True))}
+
+
+def _point(found: tri.Triangulation) -> Array | None:
+    return found.point if found.valid else None
+
+
+def _existing(array: Array) -> Array | None:
+    return array if math.isfinite(array.sum()) else None
+
+
+def _positive(value: float) -> float | None:
+    return value if value > 0.0 else None
+
+
+def _pair(array: Array) -> Pixel:
+    u, v = array.tolist()
+    return u, v
