@@ -24,7 +24,7 @@ from starlette.responses import FileResponse, PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from sims.kit.bodies import aircraft
+from sims.kit.scene.bodies import aircraft
 
 PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
 PARENTS = ("/turn1", "/turn1/turn2", "/turn1/turn2/turn3")

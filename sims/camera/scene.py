@@ -9,8 +9,9 @@ from geometry.arrays import Array
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, Frustum
 from sims.camera.world import BY_ROLE, PLACES, ROLES, TITLES, WIRES, Place
-from sims.kit.camera_figure import CameraFigure
-from sims.kit.stage import Stage
+from sims.kit.scene.camera_figure import CameraFigure
+from sims.kit.scene.stage import Stage
+from sims.kit.types import ORIGIN
 
 WIDTHS = {"ink": 2.0, "x": 2.0, "y": 2.5, "z": 3.0}
 SPOT, GRIP = 0.055, 0.075
@@ -30,7 +31,7 @@ class CameraScene:
         stage.ground(size=20.0, cell=0.5)
         stage.axes("/world", 0.6, radius=0.008)
         for role, numbers in BY_ROLE.items():
-            lines = stage.lines(f"/street/{role}", np.zeros((2, 3)), role, width=WIDTHS[role])
+            lines = stage.lines(f"/street/{role}", role, width=WIDTHS[role])
             lines.pieces(WIRES[numbers])
         for name, place in PLACES.items():
             spot = stage.ball(f"/points/{name}", SPOT, "ink")
@@ -44,7 +45,7 @@ class CameraScene:
             point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
         }
         self.camera = Eye(stage)
-        self.stand = stage.lines("/stand", np.zeros((2, 3)), "ghost", width=1.2)
+        self.stand = stage.lines("/stand", "ghost", width=1.2)
         self.eye = stage.grip("/eye", GRIP)
         self.look = stage.grip("/look", GRIP)
         self.hints = [stage.label(f"/{name}/hint", words, (0.0, 0.0, 0.2)) for name, words in HINTS.items()]
@@ -53,7 +54,7 @@ class CameraScene:
         x, y, _ = p.position
         grip = s.grip.tolist()
         self.camera.draw(p, s)
-        self.stand.stroke((x, y, 0.0), grip)
+        self.stand.stroke(((x, y, 0.0), grip))
         self.eye.pose(position=grip)
         self.look.pose(position=s.look.tolist())
         self.selected.pose(position=PLACES[p.selected])
@@ -65,9 +66,7 @@ class CameraScene:
 
     def point(self, name: str) -> None:
         """Light up the point that somebody points at in the picture or the table, or none."""
-        self.lit.show(name in PLACES)
-        if name in PLACES:
-            self.lit.pose(position=PLACES[name])
+        self.lit.place(PLACES.get(name))
 
 
 def above(place: Place) -> Place:
@@ -81,47 +80,37 @@ class Eye:
     def __init__(self, stage: Stage) -> None:
         self.figure = CameraFigure(stage, "/camera", "ink", "C")
         stage.axes("/camera/axes", 0.7, radius=0.016, letters=("x", "y", "z"))
-        self.axis = stage.lines("/camera/axis", np.zeros((2, 3)), "ghost", width=1.5)
-        self.far = stage.lines("/camera/far", np.zeros((9, 3)), "ghost", width=1.0)
+        self.axis = stage.lines("/camera/axis", "ghost", width=1.5)
+        self.far = stage.lines("/camera/far", "ghost", width=1.0)
         self.wires = stage.strokes("/camera/wires", ROLES, width=1.5)
-        self.dots = stage.cloud("/camera/dots", np.zeros((0, 3)), "ink", size=0.022)
-        self.rays = stage.lines("/camera/rays", np.zeros((2, 3)), "ghost", width=0.6)
+        self.dots = stage.cloud("/camera/dots", "ink", size=0.022)
+        self.rays = stage.lines("/camera/rays", "ghost", width=0.6)
         self.dot = stage.ball("/camera/dot", 0.024, "held")
-        self.ray = stage.lines("/camera/ray", np.zeros((2, 3)), "held", width=3.5)
+        self.ray = stage.lines("/camera/ray", "held", width=3.5)
         self.meets = stage.strokes("/camera/vanishing", SIGHTS, width=2.5)
         self.label = stage.label("/camera/label", "picture", anchor="top-center")
-        self._shown: Frustum | None = None
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         self.figure.node.pose(s.orientation.tolist(), p.position)
+        self.axis.stroke((ORIGIN, (0.0, 0.0, s.reach)))
         f = s.frustum
         there = f is not None
         self.figure.draw(NOTHING if f is None else f.corners, BODY, None if f is None else f.back)
-        self.axis.stroke((0.0, 0.0, 0.0), (0.0, 0.0, s.reach))
         for node in (self.figure.picture, self.wires, self.dots):
             node.show(there)
         self.figure.edges.show(there and p.show_frustum)
-        self.far.show(f is not None and f.far is not None and p.show_frustum)
-        self.rays.show(there and p.show_rays)
+        self.far.pieces(None if f is None or f.far is None or not p.show_frustum else _box(f.corners, f.far))
+        self.rays.pieces(f.rays if f is not None and p.show_rays else None)
         self.meets.show(there and p.show_vanishing)
         self.label.show(there and p.show_labels)
-        self.dot.show(f is not None and f.chosen is not None)
-        self.ray.show(f is not None and f.chosen is not None)
+        chosen = None if f is None or f.chosen is None else f.chosen.tolist()
+        self.dot.place(chosen and chosen[1])
+        self.ray.stroke(chosen and [chosen[0], chosen[2]])
         if f is not None:
-            self._frustum(f, s)
-
-    def _frustum(self, f: Frustum, s: CameraSolution) -> None:
-        if f.far is not None:
-            self.far.pieces(_box(f.corners, f.far))
-        self.wires.move(_all_wires(f, s.shown))
-        self.dots.points(f.dots)
-        self.rays.pieces(f.rays)
-        self.meets.move(np.stack([np.zeros((3, 3)), 1.5 * f.meet], axis=1))
-        self.label.pose(position=f.corners[3].tolist())
-        if f.chosen is not None:
-            start, dot, point = f.chosen.tolist()
-            self.dot.pose(position=dot)
-            self.ray.stroke(start, point)
+            self.wires.draw(_all_wires(f, s.shown))
+            self.dots.points(f.dots)
+            self.meets.draw(np.stack([np.zeros((3, 3)), 1.5 * f.meet], axis=1))
+            self.label.pose(position=f.corners[3].tolist())
 
 
 def _box(near: Array, far: Array) -> Array:

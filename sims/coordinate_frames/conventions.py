@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry import frames, quaternion
 from geometry.arrays import Array
-from sims.kit.stage import Quaternion
+from sims.kit.types import Quaternion
 
 Convention = Literal["opengl", "directx", "ros", "camera", "aviation", "enu", "unreal"]
 Handedness = Literal["right", "left"]

@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 from trimesh.creation import capsule, cylinder
 
-from sims.kit.bodies import joined, moved
+from sims.kit.scene.bodies import joined, moved
 
 Corners = Sequence[tuple[float, float, float]]
 CURL = (40.0, 30.0, 20.0)

@@ -1,4 +1,4 @@
-"""None"""
+"""The scene: a car in the world, the axes of a convention on its roof, and a point in them."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from sims.coordinate_frames.conventions import Axes
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import distance_in_words, in_brackets
 from sims.coordinate_frames.solution import DRAWN, FramesSolution
-from sims.kit.palette import AXES
-from sims.kit.stage import IDENTITY, Lines, Quaternion, Stage
+from sims.kit.palette import AXES, DASHES
+from sims.kit.scene.stage import Stage
+from sims.kit.types import IDENTITY, ORIGIN, Quaternion
 
 LENGTH, GHOST_LENGTH = 1.25, 1.52
 """Of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
@@ -49,17 +50,13 @@ class Box:
 
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
-        self.edges = [
-            stage.lines(f"{name}/{axis}", np.zeros((2, 3)), axis, width=2.5, dash=DASHES[axis]) for axis in AXES
-        ]
+        self.edges = [stage.lines(f"{name}/{axis}", axis, width=2.5, dash=DASHES[axis]) for axis in AXES]
         self.others = stage.strokes(f"{name}/others", ["ghost"] * 6, width=1.0)
-        self.shown: Array | None = None
 
     def draw(self, corner: Array | None) -> None:
         self.node.show(corner is not None)
-        if corner is None or (self.shown is not None and np.array_equal(corner, self.shown)):
+        if corner is None:
             return
-        self.shown = corner
         x, y, z = corner.tolist()
         feet = (0.0, y, z), (x, 0.0, z), (x, y, 0.0)
         for edge, foot in zip(self.edges, feet, strict=True):
@@ -75,43 +72,28 @@ class Point:
     def __init__(self, stage: Stage) -> None:
         self.grip = stage.grip("/point", 0.06)
         self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-right")
-        self.ray = stage.lines("/ray", np.zeros((2, 3)), "held", width=1.5)
+        self.ray = stage.lines("/ray", "held", width=1.5)
         self.undivided = stage.ball("/undivided", 0.04, "ghost")
         stage.label("/undivided/label", "w = 1", (0.0, 0.0, -0.12))
-        self.arrow = stage.arrow("/away", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), "held", radius=0.02)
-        self.away = stage.label("/away/label", "", anchor="bottom-right")
-        self.tip: list[float] | None = None
+        self.arrow = stage.arrows("/away", "held", radius=0.02)
+        self.away = stage.label("/away/label", anchor="bottom-right")
 
     def draw(self, p: FramesParams, s: FramesSolution) -> None:
         place = s.tip if s.point_world is None else s.point_world
-        seen = place is not None and (s.distance is None or s.distance < DRAWN)
-        self.grip.show(seen)
-        if place is not None and seen:
-            self.grip.pose(position=place.tolist())
+        held = None if place is None or (s.distance is not None and s.distance >= DRAWN) else place.tolist()
+        self.grip.place(held)
+        if held is not None:
             self.label.text(in_brackets(p, s))
         divided = s.cartesian is not None and p.w != 1.0 and s.direction is not None
-        self.undivided.show(divided)
-        self.ray.show(divided and s.tip is None)
-        if divided:
-            self.undivided.pose(position=s.undivided.tolist())
-            if place is not None and s.tip is None:
-                self.ray.stroke((0.0, 0.0, 0.0), tuple(place.tolist()))
-        self._away(s)
-
-    def _away(self, s: FramesSolution) -> None:
-        self.arrow.show(s.tip is not None)
-        self.away.show(s.tip is not None and s.distance is not None)
-        if s.tip is None:
-            return
-        if (tip := s.tip.tolist()) != self.tip:
-            self.tip = tip
-            self.arrow.between((0.0, 0.0, 0.0), tip)
+        self.undivided.place(s.undivided.tolist() if divided else None)
+        self.ray.stroke((ORIGIN, place.tolist()) if divided and place is not None and s.tip is None else None)
+        tip = None if s.tip is None else s.tip.tolist()
+        self.arrow.between(None if tip is None else (ORIGIN, tip))
+        self.away.say(None if tip is None or s.distance is None else distance_in_words(s.distance))
+        if tip is not None:
             self.away.pose(position=[1.03 * v for v in tip])
-        if s.distance is not None:
-            self.away.text(distance_in_words(s.distance))
 
 
-DASHES: dict[str, tuple[float, float] | None] = {"x": None, "y": (0.12, 0.05), "z": (0.05, 0.05)}
 QUARTER: Quaternion = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
 """Turns the car's nose, +X of its own, to forward."""
 Z_ROUND: Quaternion = (0.0, 1.0, 0.0, 0.0)
@@ -130,14 +112,14 @@ class Car:
 
     def __init__(self, stage: Stage) -> None:
         dark = stage.palette.dark
-        body, glass = ((96, 108, 122), (44, 52, 62)) if dark else ((201, 208, 216), (120, 132, 146))
+        body, glass = stage.palette.solid, (44, 52, 62) if dark else (120, 132, 146)
         tyres, trim = ((30, 35, 42), (150, 160, 170)) if dark else ((72, 80, 90), (236, 240, 244))
         stage.group("/car").pose(QUARTER)
         parts = meshes.car()
         for name, color in (("body", body), ("glass", glass), ("tyres", tyres), ("trim", trim)):
             stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"))
         for word, (tail, tip, place) in WORDS.items():
-            stage.arrow(f"/{word}", tail, tip, "ghost", radius=0.012)
+            stage.arrow(f"/{word}", "ghost", tail, tip, radius=0.012)
             stage.label(f"/{word}/label", word, place)
 
 
@@ -147,19 +129,16 @@ class AxesFigure:
     def __init__(self, stage: Stage, name: str, length: float, mark: str = "", *, ghost: bool = False) -> None:
         self.node = stage.group(name)
         self.third = stage.group(f"{name}/third")
-        self.shown: Axes | None = None
         for axis, path, tip in zip(AXES, (name, name, f"{name}/third"), length * np.eye(3), strict=True):
             if ghost:
-                stage.lines(f"{path}/{axis}", [np.zeros(3), tip], axis, width=2.0, dash=DASHES[axis])
+                stage.lines(f"{path}/{axis}", axis, [np.zeros(3), tip], width=2.0, dash=DASHES[axis])
             else:
-                stage.arrow(f"{path}/{axis}", np.zeros(3), tip, axis, radius=0.02)
+                stage.arrow(f"{path}/{axis}", axis, np.zeros(3), tip, radius=0.02)
             stage.label(f"{path}/letter_{axis}", axis.upper() + mark, tip * (1.0 + 0.13 / length))
 
     def draw(self, axes: Axes) -> None:
-        if axes is not self.shown:
-            self.shown = axes
-            self.node.pose(axes.wxyz)
-            self.third.pose(IDENTITY if axes.sign > 0.0 else Z_ROUND)
+        self.node.pose(axes.wxyz)
+        self.third.pose(IDENTITY if axes.sign > 0.0 else Z_ROUND)
 
 
 class Grid:
@@ -182,9 +161,8 @@ class Hand:
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
         self.hands = {side: _Fingers(stage, f"{name}/{side}", left=side == "left") for side in ("right", "left")}
-        self.arc: Lines = stage.lines(f"{name}/arc", np.zeros((2, 3)), "ink", width=3.5)
+        self.arc = stage.lines(f"{name}/arc", "ink", width=3.5)
         self.head = stage.mesh(f"{name}/head", meshes.arrow_head(), "ink")
-        self.rule: float | None = None
 
     def draw(self, axes: Axes, rule: float, shown: bool) -> None:
         self.node.show(shown)

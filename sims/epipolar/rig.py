@@ -15,7 +15,7 @@ from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipole_p
 from geometry.rotations import axis_rotation
 from sims.epipolar.drawing import Segments, chords, distance, drawn_size, spots
 from sims.epipolar.params import CENTER, OTHERS, Pixel, Place
-from sims.kit.stage import Quaternion
+from sims.kit.types import Quaternion
 
 RANK_TOLERANCE = 1e-12
 

@@ -5,19 +5,20 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-import trimesh
 
 from geometry.arrays import Array
-from sims.epipolar.drawing import EyeDrawn, Segment, Segments
+from sims.epipolar.drawing import EyeDrawn, Segment
 from sims.epipolar.params import OTHERS, EpipolarParams, Place, Side
 from sims.epipolar.readouts import short_trouble
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.camera_figure import CameraFigure
 from sims.kit.readout import quantity
-from sims.kit.stage import Stage
+from sims.kit.scene.camera_figure import CameraFigure
+from sims.kit.scene.stage import Stage
+from sims.kit.types import ORIGIN
 
 SPOT = 0.045
-ORIGIN: Place = (0.0, 0.0, 0.0)
+DROPS: Array = np.stack([OTHERS, OTHERS * (1.0, 1.0, 0.0)], axis=1)
+"""From the other points to the ground."""
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
@@ -27,28 +28,26 @@ class EpipolarScene:
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
         self.eyes = Eye(stage, "left", "L", "e"), Eye(stage, "right", "R", "e′")
-        self.baseline = stage.lines("/baseline", np.zeros((2, 3)), "ink", width=2.5)
+        self.baseline = stage.lines("/baseline", "ink", width=2.5)
         self.middle = stage.group("/middle")
         self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.5))
-        sheet = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
-        self.plane = stage.mesh("/plane", sheet, "held", opacity=0.16, side="double", flat=True)
+        self.plane = stage.sheet("/plane", "held", opacity=0.16)
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
         self.others = [stage.ball(f"/points/{k}", SPOT, "ink") for k in range(2, len(OTHERS) + 2)]
         for k, (ball, place) in enumerate(zip(self.others, OTHERS.tolist(), strict=True), start=2):
             ball.pose(position=place)
             stage.link(ball, f"{k}")
-        self.drops = stage.lines("/drops", np.zeros((2, 3)), "ghost", width=1.0)
+        self.drops = stage.lines("/drops", "ghost", width=1.0)
         self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
         self.held = stage.grip("/point", 0.06, halo=2.4)
         stage.link(self.held, "1")
         stage.label("/point/label", "P", (0.0, 0.0, 0.26))
-        self.drop = stage.lines("/point/drop", np.zeros((2, 3)), "ghost", width=1.2)
-        self.pick_ray = stage.lines("/pick_ray", np.zeros((2, 3)), "held", width=3.0)
+        self.drop = stage.lines("/point/drop", "ghost", width=1.2)
+        self.pick_ray = stage.lines("/pick_ray", "held", width=3.0)
         self.selected = Mark(stage, "/selected", width=1.8)
         self.selected_label = stage.label("/selected/ball/label", "", (0.0, 0.0, 0.22))
         self.lit = Mark(stage, "/lit", width=3.5)
         self.warning = stage.label("/warning", "")
-        self.shown = 0
         self.places: dict[str, Place] = {}
         self.centers: Segment = (ORIGIN, ORIGIN)
 
@@ -60,37 +59,25 @@ class EpipolarScene:
         self._points(p)
         self._linked(p, s)
         self.rays.draw(((p.left, p.point), (p.right, p.point)))
-        self.plane.show(p.show_plane and s.drawn.plane is not None)
-        if s.drawn.plane is not None:
-            self.plane.vertices(s.drawn.plane)
-        self.pick_ray.show(s.drawn.picked_ray is not None)
-        if s.drawn.picked_ray is not None:
-            self.pick_ray.stroke(*s.drawn.picked_ray)
+        self.plane.vertices(s.drawn.plane if p.show_plane else None)
+        self.pick_ray.stroke(s.drawn.picked_ray)
         trouble = short_trouble(s)
-        self.warning.show(trouble is not None)
-        if trouble is not None:
-            x, y, z = p.point if s.F is not None else p.left
-            self.warning.text(f"⚠ {trouble}")
-            self.warning.pose(position=(x, y, z + 0.55))
+        self.warning.say(trouble and f"⚠ {trouble}")
+        x, y, z = p.point if s.F is not None else p.left
+        self.warning.pose(position=(x, y, z + 0.55))
 
     def _baseline(self, p: EpipolarParams, s: EpipolarSolution) -> None:
-        self.baseline.stroke(p.left, p.right)
+        self.baseline.stroke((p.left, p.right))
         x, y, _ = (0.5 * (a + b) for a, b in zip(p.left, p.right, strict=True))
         self.middle.pose(position=(x, y, min(p.left[2], p.right[2])))  # below both, where it hides neither
         self.baseline_label.text(f"baseline {quantity(s.baseline, 'm', 2)}")
 
     def _points(self, p: EpipolarParams) -> None:
         self.held.pose(position=p.point)
-        self.drop.stroke((0.0, 0.0, 0.0), (0.0, 0.0, -p.point[2]))
-        self.drops.show(p.points > 1)
-        if p.points == self.shown:
-            return
-        self.shown = p.points
+        self.drop.stroke((ORIGIN, (0.0, 0.0, -p.point[2])))
+        self.drops.pieces(DROPS[: p.points - 1])
         for k, ball in enumerate(self.others, start=2):
             ball.show(k <= p.points)
-        if p.points > 1:
-            places = OTHERS[: p.points - 1]
-            self.drops.pieces(np.stack([places, places * (1.0, 1.0, 0.0)], axis=1))
 
     def _linked(self, p: EpipolarParams, s: EpipolarSolution) -> None:
         self.centers = p.left, p.right
@@ -114,8 +101,8 @@ class Mark:
 
     def draw(self, place: Place | None, centers: Segment) -> None:
         self.node.show(place is not None)
+        self.ball.place(place)
         if place is not None:
-            self.ball.pose(position=place)
             self.rays.draw([(center, place) for center in centers])
 
 
@@ -125,41 +112,28 @@ class Eye:
     def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str, epipole: str) -> None:
         path, other = f"/{name}", OTHER[name]
         self.figure = CameraFigure(stage, path, name, letter)
-        self.post = stage.lines(f"{path}/post", np.zeros((2, 3)), "ghost", width=1.2)
+        self.post = stage.lines(f"{path}/post", "ghost", width=1.2)
         self.pixel = stage.ball(f"{path}/pixel", 0.022, name)
-        self.others = stage.cloud(f"{path}/others", np.zeros((0, 3)), name, size=0.016)
-        self.line = stage.lines(f"{path}/line", np.zeros((2, 3)), other, width=3.0)
-        self.stretch = stage.lines(f"{path}/stretch", np.zeros((2, 3)), other, width=1.2)
-        self.all_lines = stage.lines(f"{path}/all_lines", np.zeros((2, 3)), other, width=1.0)
-        self.picked_line = stage.lines(f"{path}/picked_line", np.zeros((2, 3)), "held", width=4.0)
+        self.others = stage.cloud(f"{path}/others", name, size=0.016)
+        self.line = stage.lines(f"{path}/line", other, width=3.0)
+        self.stretch = stage.lines(f"{path}/stretch", other, width=1.2)
+        self.all_lines = stage.lines(f"{path}/all_lines", other, width=1.0)
+        self.picked_line = stage.lines(f"{path}/picked_line", "held", width=4.0)
         self.epipole = stage.group(f"{path}/epipole")
         stage.ball(f"{path}/epipole/ball", 0.03, "ink")
         stage.label(f"{path}/epipole/label", epipole, (0.0, -0.12, 0.0))
-        self.toward = stage.lines(f"{path}/toward", np.zeros((2, 3)), "ink", width=1.2)
-        self.shown: tuple[Array | None, Segments] = (None, ())
+        self.toward = stage.lines(f"{path}/toward", "ink", width=1.2)
 
     def draw(self, d: EyeDrawn) -> None:
         self.figure.node.pose(d.wxyz, d.center)
         self.figure.draw(d.corners, d.size)
-        self.post.stroke((0.0, 0.08, -0.12 * d.size), (0.0, d.center[2], -0.12 * d.size))
-        for node, place in ((self.pixel, d.pixel), (self.epipole, d.epipole)):
-            node.show(place is not None)
-            if place is not None:
-                node.pose(position=place)
-        toward = None if d.epipole is None else ((0.0, 0.0, 0.0), d.epipole)
-        pieces = d.line, d.stretch, d.picked_line, toward
-        for lines, piece in zip((self.line, self.stretch, self.picked_line, self.toward), pieces, strict=True):
-            lines.show(piece is not None)
-            if piece is not None:
-                lines.stroke(*piece)
-        self._others(d)
-
-    def _others(self, d: EyeDrawn) -> None:
+        self.post.stroke(((0.0, 0.08, -0.12 * d.size), (0.0, d.center[2], -0.12 * d.size)))
+        self.pixel.place(d.pixel)
+        self.epipole.place(d.epipole)
+        self.toward.stroke(None if d.epipole is None else (ORIGIN, d.epipole))
+        self.line.stroke(d.line)
+        self.stretch.stroke(d.stretch)
+        self.picked_line.stroke(d.picked_line)
         self.others.show(len(d.others) > 0)
-        self.all_lines.show(len(d.all_lines) > 0)
-        spots, lines = self.shown
-        if d.others is not spots and len(d.others):
-            self.others.points(d.others)
-        if d.all_lines is not lines and d.all_lines:
-            self.all_lines.pieces(np.array(d.all_lines))
-        self.shown = d.others, d.all_lines
+        self.others.points(d.others)
+        self.all_lines.pieces(np.array(d.all_lines))

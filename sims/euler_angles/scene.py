@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from sims.euler_angles.params import NEAR_LOCK, EulerParams
 from sims.euler_angles.solution import EulerSolution, Turn
-from sims.kit import bodies
+from sims.kit.palette import DASHES
 from sims.kit.readout import quantity
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 
 
 class EulerScene:
@@ -26,10 +24,7 @@ class EulerScene:
             stage.axes(parents[1], 1.15, ghost=True, letters=None),
             stage.axes(parents[2], 1.15, radius=0.02, letters=("x", "y", "z")),
         ]
-        body = bodies.aircraft()
-        grey = (96, 108, 122) if stage.palette.dark else (201, 208, 216)
-        stage.mesh(f"{parents[2]}/hull", body["hull"], grey)
-        stage.mesh(f"{parents[2]}/mark", body["mark"], "held")
+        stage.aircraft(parents[2])
         self.stage = stage
         self.befores = ["", *parents[:2]]
         self.arcs: list[Any] = []
@@ -58,25 +53,20 @@ class Arc:
     def __init__(self, stage: Stage, name: str, axis: str, radius: float, locks: tuple[float, ...]) -> None:
         self.node = stage.group(name)
         self.radius = radius
-        dash = {"x": None, "y": (0.14, 0.05), "z": (0.06, 0.045)}[axis]
-        self.line = stage.lines(f"{name}/line", [(radius, 0, 0), (radius, 0, 0.001)], axis, width=4.0, dash=dash)
-        self.start = stage.lines(f"{name}/start", [(0, 0, 0), (radius, 0, 0)], "ghost", width=1.2)
-        self.end = stage.lines(f"{name}/end", [(0, 0, 0), (radius, 0, 0)], axis, width=1.5)
-        self.axis = stage.lines(f"{name}/axis", [(0, 0, -1.7), (0, 0, 1.7)], axis, width=5.0)
+        self.line = stage.lines(f"{name}/line", axis, width=4.0, dash=DASHES[axis])
+        self.start = stage.lines(f"{name}/start", "ghost", [(0, 0, 0), (radius, 0, 0)], width=1.2)
+        self.end = stage.lines(f"{name}/end", axis, [(0, 0, 0), (radius, 0, 0)], width=1.5)
+        self.axis = stage.lines(f"{name}/axis", axis, [(0, 0, -1.7), (0, 0, 1.7)], width=5.0)
         self.axis.show(False)
         # the outermost label hangs lower, clear of the next one where the two arcs meet
         self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
         self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
         self.locks = locks
-        self.shown: tuple[Turn, bool] | None = None
         for lock in locks:
-            region = stage.lines(f"{name}/lock{lock:.0f}", np.zeros((2, 3)), "warn", width=3.0, dash=(0.03, 0.03))
+            region = stage.lines(f"{name}/lock{lock:.0f}", "warn", width=3.0, dash=(0.03, 0.03))
             region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
 
     def draw(self, turn: Turn, *, near_lock: bool) -> None:
-        if self.shown == (turn, near_lock):
-            return
-        self.shown = (turn, near_lock)
         radians = math.radians(turn.applied)
         self.node.pose(turn.seen)
         visible = abs(turn.applied) > 0.5

@@ -12,7 +12,7 @@ from geometry import euler, quaternion
 from geometry.arrays import Array
 from geometry.rotations import matrix_to_axis_angle
 from sims.euler_angles.params import EulerParams
-from sims.kit.stage import Quaternion
+from sims.kit.types import Quaternion
 
 SHORT = {"yaw": "α", "pitch": "β", "roll": "γ"}
 # In which direction each turn is seen: the nose for turns about z and y, the left wing for turns about x.

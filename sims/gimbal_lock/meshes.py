@@ -11,7 +11,7 @@ import numpy as np
 import trimesh
 
 from geometry.arrays import Array
-from sims.kit.bodies import joined
+from sims.kit.scene.bodies import joined
 
 Profile = Sequence[tuple[float, float]]
 FULL = (0.0, 2.0 * math.pi)

@@ -10,9 +10,11 @@ from sims.gimbal_lock import meshes
 from sims.gimbal_lock.meshes import RINGS, Ring
 from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.solution import GimbalSolution
-from sims.kit import bodies
+from sims.kit.palette import DASHES
 from sims.kit.readout import figure, quantity
-from sims.kit.stage import Label, Stage, arc_pieces
+from sims.kit.scene.nodes import Label
+from sims.kit.scene.pieces import arc_pieces
+from sims.kit.scene.stage import Stage
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
@@ -53,16 +55,12 @@ class GimbalScene:
         holders = ["", "/outer", "/outer/middle", "/outer/middle/inner"]
         self.rings = [stage.group(name) for name in holders[1:]]
         self.labels = [self._ring(stage, ring, *pair) for ring, *pair in zip(RINGS, holders, holders[1:], strict=False)]
-        body = {name: part.copy().apply_scale(AIRCRAFT) for name, part in bodies.aircraft().items()}
-        grey = (96, 108, 122) if dark else (201, 208, 216)
-        stage.mesh(f"{holders[3]}/hull", body["hull"], grey)
-        stage.mesh(f"{holders[3]}/mark", body["mark"], "held")
+        stage.aircraft(holders[3], scale=AIRCRAFT)
         stage.mesh(f"{holders[3]}/mount", meshes.mount(AIRCRAFT), steel)
         self.ghost = stage.group("/ghost")
-        for name, part in body.items():
-            stage.mesh(f"/ghost/{name}", part, "ghost" if name == "hull" else "held", opacity=0.35)
+        stage.aircraft("/ghost", scale=AIRCRAFT, ghost=(0.35, 0.35))
         for name, ends in STROKES.items():
-            stage.lines(f"/ghost/{name}", AIRCRAFT * np.array(ends), "ghost", width=1.5, dash=(0.05, 0.04))
+            stage.lines(f"/ghost/{name}", "ghost", AIRCRAFT * np.array(ends), width=1.5, dash=(0.05, 0.04))
         self.ghost_label = stage.label("/ghost/label", "", (-0.75, 0.0, 0.4))
         self.reach = Reach(stage)
 
@@ -72,11 +70,10 @@ class GimbalScene:
         stage.mesh(f"{name}/stripe", meshes.stripe(ring), "page")
         stage.mesh(f"{holder}/pivots", meshes.pivots(ring), ring.letter)
         along = np.eye(3)["xyz".index(ring.letter)]
-        dash = {"x": None, "y": (0.14, 0.05), "z": (0.05, 0.05)}[ring.letter]
         tip = TIPS[ring.letter]
         ends = [-TIPS["x"] * along, (tip - 0.1) * along]
-        stage.lines(f"{holder}/axis", ends, ring.letter, width=WIDTHS[ring.letter], dash=dash)
-        stage.arrow(f"{holder}/tip", (tip - 0.14) * along, tip * along, ring.letter, radius=0.02)
+        stage.lines(f"{holder}/axis", ring.letter, ends, width=WIDTHS[ring.letter], dash=DASHES[ring.letter])
+        stage.arrow(f"{holder}/tip", ring.letter, (tip - 0.14) * along, tip * along, radius=0.02)
         return stage.label(f"{holder}/label", "", (tip + BEYOND) * along, anchor=ANCHORS[ring.letter])
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
@@ -98,14 +95,14 @@ class Reach:
         self.node = stage.group("/reach")
         self.shape = stage.group("/reach/shape")
         self.ball = stage.ball("/reach/shape/ball", 1.0, "ink", opacity=0.16, side="double")
-        self.outline = stage.lines("/reach/shape/outline", np.zeros((2, 3)), "ghost", width=1.2)
+        self.outline = stage.lines("/reach/shape/outline", "ghost", width=1.2)
         self.outline.pieces(np.concatenate([np.roll(CIRCLE, k, axis=2) for k in range(3)]))
         self.weak = stage.group("/reach/weak")
-        stage.lines("/reach/weak/axis", [(0, 0, -LOST), (0, 0, LOST)], "warn", width=2.5, dash=(0.06, 0.06))
+        stage.lines("/reach/weak/axis", "warn", [(0, 0, -LOST), (0, 0, LOST)], width=2.5, dash=(0.06, 0.06))
         self.weak_label = stage.label("/reach/weak/label", "", NEAR_TIP, anchor="top-center")
         self.lost = stage.group("/reach/lost")
         for name, end in (("arrow", LOST), ("opposite", -LOST)):
-            stage.arrow(f"/reach/lost/{name}", (0.0, 0.0, 0.0), (0.0, 0.0, end), "warn", radius=0.025)
+            stage.arrow(f"/reach/lost/{name}", "warn", (0.0, 0.0, 0.0), (0.0, 0.0, end), radius=0.025)
         stage.label("/reach/lost/label", "⚠ no ring turns about this", NEAR_TIP, anchor="top-center")
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
@@ -116,5 +113,4 @@ class Reach:
         self.outline.scale((a, b, c))
         self.lost.show(s.lost_axis is not None)
         self.weak.show(s.near)
-        if s.near:
-            self.weak_label.text(f"⚠ rings must turn {figure(s.effort, 0)}× as fast")
+        self.weak_label.text(f"⚠ rings must turn {figure(s.effort, 0)}× as fast")

@@ -9,7 +9,7 @@ from geometry import euler, gimbal, quaternion
 from geometry.arrays import Array
 from geometry.rotations import matrix_to_axis_angle
 from sims.gimbal_lock.params import NEAR, GimbalParams
-from sims.kit.stage import Quaternion
+from sims.kit.types import Quaternion
 
 
 @dataclass(frozen=True)

@@ -90,6 +90,11 @@ class Palette:
     page: str
     dark: bool
 
+    @property
+    def solid(self) -> RGB:
+        """What to send for a body that has no role: the grey of things."""
+        return (96, 108, 122) if self.dark else (201, 208, 216)
+
     def surface(self, role: str) -> RGB:
         """What to send for a mesh of a role, so that it shows in the role's colour."""
         return before_tone_mapping(getattr(self, role))
@@ -112,3 +117,5 @@ DARK = Palette(
     ghost="#9aa4af", warn="#ff6b6b", ink="#e6edf3", page="#15191f", dark=True,
 )  # fmt: skip
 AXES = ("x", "y", "z")
+DASHES: dict[str, tuple[float, float] | None] = {"x": None, "y": (0.12, 0.05), "z": (0.05, 0.05)}
+"""The axes' second cue: metres on and off."""

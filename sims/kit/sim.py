@@ -14,7 +14,7 @@ from sims.kit.palette import Palette
 from sims.kit.pane import Pane
 from sims.kit.params import Params
 from sims.kit.readout import Readout
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 
 DRAWN: Mapping[str, Any] = {"drawn": True}
 """Metadata of a Solution's field that the scene alone needs: too large to go out."""

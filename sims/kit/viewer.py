@@ -16,8 +16,9 @@ from sims.kit import pane, readout
 from sims.kit.entries import Entries
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params, entry_bounds, extra
+from sims.kit.scene.stage import Stage
 from sims.kit.sim import Sim, Typed
-from sims.kit.stage import Dragged, Stage
+from sims.kit.types import Place
 from sims.kit.viser_internals import control_id, received, set_property, set_value
 
 ACCENT = (11, 95, 215)
@@ -354,9 +355,9 @@ class Viewer:
         if not self.look.watching:
             self._host.drag(name, ray)
 
-    def _dragged(self, name: str, dragged: Dragged) -> None:
+    def _dragged(self, name: str, place: Place) -> None:
         if not self.look.watching:
-            self._host.drag(name, dragged.position)
+            self._host.drag(name, place)
 
 
 def worded(params: Params, name: str) -> str:

@@ -10,8 +10,10 @@ import trimesh
 from geometry import quaternion
 from geometry.arrays import Array
 from sims.kit.readout import THIN, figure, quantity
+from sims.kit.scene.nodes import Arrows, Cloud, Node
+from sims.kit.scene.stage import Stage
 from sims.kit.sim import View
-from sims.kit.stage import Arrows, Cloud, Node, Stage
+from sims.kit.types import ORIGIN
 from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
 from sims.point_cloud.shown import Layer
 
@@ -40,10 +42,9 @@ class CloudScene:
         self.ring = Ring(stage)
         self.plane = Patch(stage)
         self.mesh = Mesh(stage)
-        self.links = stage.lines("/pairs", np.zeros((2, 3)), "held", width=1.5)
+        self.links = stage.lines("/pairs", "held", width=1.5)
         self.names = [stage.label(f"/name{k}", "", anchor="bottom-center") for k in range(NAMES)]
         self._view: View | None = None
-        self._links: Array | None = None
         stage.rays("/cloud")
 
     def draw(self, p: CloudParams, s: CloudSolution) -> None:
@@ -75,10 +76,7 @@ class CloudScene:
 
     def _pairs(self, s: CloudSolution) -> None:
         links = None if s.registration is None else s.registration.links
-        self.links.show(links is not None and len(links) > 0)
-        if links is not None and links is not self._links and len(links):
-            self.links.pieces(links)
-        self._links = links
+        self.links.pieces(links)
 
     def _names(self, s: CloudSolution) -> None:
         for k, label in enumerate(self.names):
@@ -94,25 +92,19 @@ class Points:
 
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
-        self.dots: Cloud = stage.cloud(f"{name}/points", NOWHERE, "ink")
-        self.arrows: Arrows = stage.arrows(f"{name}/normals", np.zeros((1, 2, 3)), "ink")
-        self._layer: Layer | None = None
-        self._normals: Array | None = None
+        self.dots: Cloud = stage.cloud(f"{name}/points", "ink")
+        self.arrows: Arrows = stage.arrows(f"{name}/normals", "ink")
 
     def draw(self, layer: Layer, size: float, *, hidden: bool = False) -> None:
         self.dots.show(len(layer.points) > 0 and not hidden)
         self.dots.size(size)
-        if layer is not self._layer and len(layer.points):
+        if len(layer.points):
             self.dots.draw(layer.points, layer.colors)
-        self._layer = layer
 
     def point(self, normals: Array, length: float) -> None:
         """Arrows (n, 2, 3) of a length."""
-        self.arrows.show(len(normals) > 0)
-        if normals is not self._normals and len(normals):
-            self.arrows.draw(normals)
-            self.arrows.thickness(SLENDER * length)
-        self._normals = normals
+        self.arrows.draw(normals)
+        self.arrows.thickness(SLENDER * length)
 
 
 class Box:
@@ -120,18 +112,15 @@ class Box:
 
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/box")
-        self.edges = stage.lines("/box/edges", np.zeros((2, 3)), "ghost", width=1.5)
+        self.edges = stage.lines("/box/edges", "ghost", width=1.5)
         self.labels = [stage.label(f"/box/{axis}", "", anchor=anchor) for axis, anchor in ANCHORS.items()]
-        self._shown: tuple[list[float], list[float]] | None = None
 
     def draw(self, low: Array, high: Array, visible: bool) -> None:
         self.node.show(visible)
         for label in self.labels:
             label.show(visible)
-        ends = low.tolist(), high.tolist()
-        if not visible or ends == self._shown:
+        if not visible:
             return
-        self._shown = ends
         self.edges.pieces(box_edges(low, high))
         middle = 0.5 * (low + high)
         places = (middle[0], low[1], low[2]), (high[0], middle[1], low[2]), (low[0], low[1], middle[2])
@@ -157,7 +146,7 @@ class Ring:
         self.rings = [
             stage.mesh(f"/selected/ring{k}", ring.copy().apply_transform(turn), "held") for k, turn in enumerate(turns)
         ]
-        self.normal = stage.lines("/selected/normal", np.zeros((2, 3)), "held", width=3.0)
+        self.normal = stage.lines("/selected/normal", "held", width=3.0)
         self.label = stage.label("/selected/label", "", anchor="bottom-left")
 
     def draw(self, selected: Selected | None, radius: float) -> None:
@@ -170,7 +159,7 @@ class Ring:
             ring.scale(RING * radius)
         self.normal.show(selected.normal is not None)
         if selected.normal is not None:
-            self.normal.stroke((0.0, 0.0, 0.0), (3.0 * RING * radius * selected.normal).tolist())
+            self.normal.stroke((ORIGIN, (3.0 * RING * radius * selected.normal).tolist()))
         x, y, z = (figure(v, 2) for v in selected.position.tolist())
         self.label.text(f"({x}, {y}, {z}){THIN}m")
         self.label.pose(position=(0.0, 0.0, 1.4 * RING * radius))
@@ -180,16 +169,14 @@ class Patch:
     """The piece of the ground plane over the box."""
 
     def __init__(self, stage: Stage) -> None:
-        flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
-        self.face = stage.mesh("/ground_plane", flat, "held", opacity=0.28, side="double", flat=True)
-        self.rim = stage.lines("/ground_plane/rim", np.zeros((5, 3)), "held", width=2.5)
+        self.face = stage.sheet("/ground_plane", "held", opacity=0.28)
+        self.rim = stage.lines("/ground_plane/rim", "held", width=2.5)
         self.label = stage.label("/ground_plane/label", "ground")
 
     def draw(self, corners: Array | None) -> None:
-        self.face.show(corners is not None)
+        self.face.vertices(corners)
         self.label.show(corners is not None)
         if corners is not None:
-            self.face.vertices(corners)
             self.rim.path(corners[[0, 1, 2, 3, 0]])
             self.label.pose(position=(0.5 * (corners[0] + corners[3])).tolist())
 
@@ -200,11 +187,9 @@ class Mesh:
     def __init__(self, stage: Stage) -> None:
         start = trimesh.Trimesh(np.eye(3), [[0, 1, 2]], process=False)
         self.body = stage.mesh("/surface", start, (178, 172, 160), side="double", flat=True)
-        self._vertices: Array | None = None
 
     def draw(self, s: CloudSolution) -> None:
         found = s.surface if s.surface is not None and s.surface.triangles else None
         self.body.show(found is not None)
-        if found is not None and found.vertices is not self._vertices:
-            self._vertices = found.vertices
+        if found is not None:
             self.body.shape(found.vertices, found.faces)

@@ -7,10 +7,8 @@ import math
 import numpy as np
 import trimesh
 
-from geometry.arrays import Array
-from sims.kit import bodies
 from sims.kit.readout import quantity
-from sims.kit.stage import Lines, Stage
+from sims.kit.scene.stage import Stage
 from sims.quaternion.params import TIP, QuaternionParams
 from sims.quaternion.paths import Name, Way
 from sims.quaternion.solution import QuaternionSolution
@@ -31,10 +29,7 @@ class QuaternionScene:
         stage.ground(size=6.0, height=-1.4)
         stage.axes("/world", 1.12, radius=0.008)
         self.object = stage.axes("/object", 1.08, radius=0.018, letters=None)
-        body = bodies.aircraft()
-        grey = (96, 108, 122) if stage.palette.dark else (201, 208, 216)
-        stage.mesh("/object/hull", body["hull"], grey)
-        stage.mesh("/object/mark", body["mark"], "held")
+        stage.aircraft("/object")
         self.start, self.target = Ghost(stage, "start"), Ghost(stage, "target")
         self.axis = Axis(stage)
         self.sphere = Sphere(stage)
@@ -48,9 +43,7 @@ class QuaternionScene:
         self.axis.draw(p, s)
         self.sphere.draw(p, s)
         self.point.draw(p, s)
-        self.euler.show(p.show_euler)
-        if p.show_euler:
-            self.euler.text(euler_in_words(s))
+        self.euler.say(euler_in_words(s) if p.show_euler else None)
 
 
 def euler_in_words(s: QuaternionSolution) -> str:
@@ -64,9 +57,7 @@ class Ghost:
 
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(f"/{name}")
-        body = bodies.aircraft()
-        stage.mesh(f"/{name}/hull", body["hull"], "ghost", opacity=0.22)
-        stage.mesh(f"/{name}/mark", body["mark"], "held", opacity=0.35)
+        stage.aircraft(f"/{name}", ghost=(0.22, 0.35))
         stage.label(f"/{name}/label", name, (-0.98, 0.0, 0.42))
 
     def draw(self, wxyz: list[float], visible: bool) -> None:
@@ -80,25 +71,21 @@ class Axis:
 
     def __init__(self, stage: Stage) -> None:
         self.frame = stage.group("/axis")
-        stage.arrow("/axis/arrow", (0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.03), "held", radius=0.018)
-        stage.lines("/axis/back", [(0.0, 0.0, 0.0), (0.0, 0.0, -TIP)], "held", width=1.5, dash=(0.06, 0.05))
+        stage.arrow("/axis/arrow", "held", (0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.03), radius=0.018)
+        stage.lines("/axis/back", "held", [(0.0, 0.0, 0.0), (0.0, 0.0, -TIP)], width=1.5, dash=(0.06, 0.05))
         self.turn = stage.group("/axis/turn")
         self.turn.pose(position=(0.0, 0.0, HEIGHT))
-        self.line = stage.lines("/axis/turn/arc", [(ARC, 0.0, 0.0), (ARC, 0.0, 0.001)], "held", width=4.0)
-        stage.lines("/axis/turn/begin", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], "ghost", width=1.5)
-        self.end = stage.lines("/axis/turn/end", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], "held", width=1.5)
+        self.line = stage.lines("/axis/turn/arc", "held", [(ARC, 0.0, 0.0), (ARC, 0.0, 0.001)], width=4.0)
+        stage.lines("/axis/turn/begin", "ghost", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
+        self.end = stage.lines("/axis/turn/end", "held", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
         stage.mesh("/axis/turn/end/head", ARROWHEAD, "held")
         self.label = stage.label("/axis/turn/label", "")
         self.tip = stage.grip("/tip", 0.05)
         stage.label("/tip/label", "n", (0.0, 0.0, 0.17))
-        self.angle = math.nan
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
         self.frame.pose(s.axis_frame.tolist())
         self.tip.pose(position=s.tip.tolist())
-        if p.angle == self.angle:
-            return
-        self.angle = p.angle
         radians = math.radians(p.angle)
         self.turn.show(p.angle > 0.0)
         self.line.arc(ARC, radians)
@@ -115,7 +102,7 @@ class Sphere:
         self.node = stage.group("/sphere")
         stage.mesh("/sphere/ball", SPHERE, "ghost", opacity=0.1, side="back")
         for axis, turn in {"x": (0.5, 0.5, 0.5, 0.5), "y": (0.5, -0.5, -0.5, -0.5), "z": (1.0, 0.0, 0.0, 0.0)}.items():
-            circle = stage.lines(f"/sphere/circle_{axis}", np.zeros((2, 3)), "ghost", width=0.8)
+            circle = stage.lines(f"/sphere/circle_{axis}", "ghost", width=0.8)
             circle.arc(1.0, 2.0 * math.pi)
             circle.pose(turn)
         self.paths = {name: Path(stage, name) for name in NAMES}
@@ -135,20 +122,15 @@ class Path:
         self.name = name
         path = f"/sphere/{name}"
         stage.group(path)
-        self.thick = stage.lines(f"{path}/chosen", np.zeros((2, 3)), "ink", width=3.5)
-        self.thin = stage.lines(f"{path}/ghost", np.zeros((2, 3)), "ghost", width=1.5)
+        self.thick = stage.lines(f"{path}/chosen", "ink", width=3.5)
+        self.thin = stage.lines(f"{path}/ghost", "ghost", width=1.5)
         self.label = stage.label(f"{path}/label", NAMES[name])
-        self.shown: dict[Lines, Array] = {}
 
     def draw(self, way: Way, chosen: Name) -> None:
         """Where SLERP's and NLERP's arc is drawn for one of them, only the other's marks are added."""
         line, other = (self.thick, self.thin) if chosen == self.name else (self.thin, self.thick)
-        line.show(True)
+        line.pieces(way.marks if {self.name, chosen} == {"slerp", "nlerp"} else way.drawn)
         other.show(False)
-        pieces = way.marks if {self.name, chosen} == {"slerp", "nlerp"} else way.drawn
-        if self.shown.get(line) is not pieces:
-            self.shown[line] = pieces
-            line.pieces(pieces)
         self.label.show(chosen == self.name)
         if chosen == self.name:
             self.label.pose(position=(1.2 * way.path[len(way.path) // 2]).tolist())
@@ -162,7 +144,7 @@ class Point:
         stage.label("/point/label", "p", (0.0, 0.0, -0.16))
         self.image = stage.ball("/image", 0.055, "ink")
         self.image_name = stage.label("/image/label", "p′", (0.0, 0.0, -0.16))
-        self.track = stage.lines("/axis/track", np.zeros((2, 3)), "held", width=1.8, dash=(0.03, 0.04))
+        self.track = stage.lines("/axis/track", "held", width=1.8, dash=(0.03, 0.04))
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
         turning = s.track.radius > 0.01 and p.angle > 0.0

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from trimesh.creation import annulus, box, cylinder
 
-from sims.kit.bodies import joined, moved
+from sims.kit.scene.bodies import joined, moved
 
 FLOOR = -1.0
 """Height of the floor; the base, where the world's origin is, stands on a column."""

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from sims.kit.readout import quantity
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
+from sims.kit.types import ORIGIN
 from sims.transform_chain import meshes
 from sims.transform_chain.params import ChainParams
 from sims.transform_chain.readouts import sub, transform_name
@@ -34,8 +35,8 @@ class ChainScene:
         self.arm = Arm(stage, "")
         self.end = End(stage)
         self.grip = stage.grip("/grip", 0.032, halo=2.4)
-        self.arrows = stage.arrows("/transforms", np.zeros((1, 2, 3)), "ink", radius=0.013)
-        self.circle = stage.lines("/trace", NOWHERE, "held", width=2.5, dash=(0.06, 0.05))
+        self.arrows = stage.arrows("/transforms", "ink", radius=0.013)
+        self.circle = stage.lines("/trace", "held", width=2.5, dash=(0.06, 0.05))
         self.status = Status(stage)
         self.target = Target(stage)
         self.ghost: Ghost | None = None
@@ -47,9 +48,7 @@ class ChainScene:
         self._name(p, s)
         self.end.draw(p, s)
         self.grip.pose(position=s.end)
-        self.arrows.show(len(s.arrows) > 0)
-        if len(s.arrows):
-            self.arrows.draw(s.arrows)
+        self.arrows.draw(s.arrows)
         self.circle.show(s.circle is not None)
         if s.circle is not None:
             self.circle.pose(s.circle.wxyz, s.circle.centre)
@@ -86,18 +85,14 @@ class End:
             stage.mesh("/end_effector/mark", parts["mark"], "held", flat=True),
         ]
         ends = np.stack([np.zeros((3, 3)), np.eye(3)], axis=1) * END
-        self.axes = stage.arrows("/end_effector/axes", ends, ("x", "y", "z"), radius=0.017)
+        self.axes = stage.arrows("/end_effector/axes", ("x", "y", "z"), ends, radius=0.017)
         self.letters = [stage.label(f"/end_effector/letter_{a}", a) for a in "xyz"]
         self.point = stage.ball("/end_effector/point", 0.028, "ink")
-        self.arm = stage.lines("/end_effector/arm", NOWHERE, "ink", width=1.5, dash=(0.03, 0.03))
+        self.arm = stage.lines("/end_effector/arm", "ink", width=1.5, dash=(0.03, 0.03))
         self.letter = stage.label("/end_effector/letter_p", "p")
-        self.shown: tuple[object, float] | None = None
 
     def draw(self, p: ChainParams, s: ChainSolution) -> None:
         self.node.pose(s.wxyz, s.end)
-        if self.shown == (p.point, s.size):
-            return
-        self.shown = p.point, s.size
         for part in self.parts:
             part.scale(s.size)
         self.axes.scale(s.size)
@@ -106,7 +101,7 @@ class End:
         x, y, z = p.point
         self.point.pose(position=p.point)
         self.letter.pose(position=(x, y, z + 0.09))
-        self.arm.path([(0.0, 0.0, 0.0), p.point])
+        self.arm.path([ORIGIN, p.point])
 
 
 class Ghost:
@@ -118,7 +113,7 @@ class Ghost:
         self.end = stage.group("/swapped_end")
         self.frame = frame(stage, "/swapped_end/frame")
         self.label = stage.label("/swapped_end/label", "", (0.0, 0.0, -0.16))
-        self.apart = stage.lines("/swapped_apart", NOWHERE, "ghost", width=1.5)
+        self.apart = stage.lines("/swapped_apart", "ghost", width=1.5)
 
     def draw(self, p: ChainParams, s: ChainSolution) -> None:
         for node in (self.node, self.end, self.apart):
@@ -130,7 +125,7 @@ class Ghost:
         self.end.pose(s.swapped.end_wxyz, s.swapped.end)
         self.frame.scale(END * s.size)
         self.label.text(f"T{sub(p.swap - 1)}{sub(p.swap)} and T{sub(p.swap)}{sub(p.swap + 1)} swapped")
-        self.apart.stroke(s.end, s.swapped.end)
+        self.apart.stroke((s.end, s.swapped.end))
 
 
 class Status:
@@ -139,8 +134,8 @@ class Status:
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/status")
         self.label = stage.label("/status/label", "", (0.0, 0.0, 0.3))
-        self.lost = stage.lines("/status/lost", NOWHERE, "warn", width=3.0, dash=(0.05, 0.04))
-        self.pull = stage.lines("/pull", NOWHERE, "warn", width=2.0, dash=(0.05, 0.05))
+        self.lost = stage.lines("/status/lost", "warn", width=3.0, dash=(0.05, 0.04))
+        self.pull = stage.lines("/pull", "warn", width=2.0, dash=(0.05, 0.05))
         self.mark = stage.ball("/pull/mark", 0.035, "warn")
 
     def draw(self, p: ChainParams, s: ChainSolution) -> None:
@@ -165,7 +160,7 @@ class Target:
 
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/target")
-        self.rings = [stage.lines(f"/target/ring{k}", NOWHERE, "held", width=3.0) for k in range(2)]
+        self.rings = [stage.lines(f"/target/ring{k}", "held", width=3.0) for k in range(2)]
         self.rings[1].pose((math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0))
         for ring in self.rings:
             ring.arc(0.09, 2.0 * math.pi)

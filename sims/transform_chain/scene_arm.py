@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sims.kit.stage import Quaternion, Stage, Strokes
+from sims.kit.scene.nodes import Strokes
+from sims.kit.scene.stage import Stage
+from sims.kit.types import Quaternion
 from sims.transform_chain import meshes
 from sims.transform_chain.solution import Joint
 
@@ -48,29 +50,26 @@ class Link:
         self._palette = stage.palette
         self._ghost = ghost
         opacity = LEVEL if ghost else None
-        grey = (96, 108, 122) if stage.palette.dark else (201, 208, 216)
         self.joint = stage.mesh(f"{parent}/joint{number}", meshes.bearing(), "ghost", opacity=opacity)
         self.node = stage.group(path)
-        self.body = stage.mesh(f"{path}/body", meshes.link(), "ghost" if ghost else grey, opacity=opacity, flat=True)
+        self.body = stage.mesh(
+            f"{path}/body", meshes.link(), "ghost" if ghost else stage.palette.solid, opacity=opacity, flat=True
+        )
         self.letter = None if ghost else stage.label(f"{parent}/joint{number}/letter", "")
         self.frame = None if ghost else frame(stage, f"{path}/frame")
         self.label = None if ghost else stage.label(f"{path}/label", "")
-        self._axis = ""
 
     def draw(self, joint: Joint, girth: float, size: float, *, last: bool) -> None:
         self.node.pose(joint.wxyz, joint.position)
-        if joint.axis != self._axis:
-            self._axis = joint.axis
-            self.joint.pose(ALONG[joint.axis])
-            if self.letter is not None:
-                self.joint.color(self._palette.surface(joint.axis))
-                self.letter.text(joint.axis)
+        self.joint.pose(ALONG[joint.axis])
         self.joint.scale(girth)
         hand = meshes.GRIPPER * size if last else 0.0
         self.body.show(joint.length - hand > SHORTEST)
         self.body.pose(position=(-hand, 0.0, 0.0))
         self.body.scale((max(joint.length - hand, SHORTEST), girth, girth))
         if self.letter is not None and self.frame is not None:
+            self.joint.color(self._palette.surface(joint.axis))
+            self.letter.text(joint.axis)
             self.letter.pose(position=(0.0, 0.0, (meshes.AXLE + 0.09) * girth))
             self.frame.show(not last)
             self.frame.scale(FRAME * size)
@@ -82,10 +81,8 @@ class Link:
     def name(self, text: str, place: tuple[float, float, float]) -> None:
         """Name the transform that leads here, at a place in its frame; no name hides it."""
         if self.label is not None:
-            self.label.show(bool(text))
-            if text:
-                self.label.text(text)
-                self.label.pose(position=place)
+            self.label.say(text or None)
+            self.label.pose(position=place)
 
 
 def frame(stage: Stage, name: str) -> Strokes:

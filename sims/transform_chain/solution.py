@@ -13,7 +13,7 @@ from geometry import quaternion, se3
 from geometry.arrays import Array
 from geometry.kinematics import Chain, Posture, dexterity
 from geometry.rotations import rotation_angle
-from sims.kit.stage import Quaternion
+from sims.kit.types import Quaternion
 from sims.transform_chain.params import ChainParams, Place
 
 USUAL = 2.3

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-import numpy as np
-
 from geometry import quaternion
 from geometry.camera import R_WORLD_LEVEL
-from sims.kit.camera_figure import CameraFigure
 from sims.kit.readout import THIN, figure, quantity
-from sims.kit.stage import Stage
+from sims.kit.scene.camera_figure import CameraFigure
+from sims.kit.scene.stage import Stage
+from sims.kit.types import ORIGIN
 from sims.triangulation.params import NAMES, Pixel, TriangulationParams
 from sims.triangulation.scene_closeup import CloseUp
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
@@ -24,7 +23,6 @@ FAR = 12.0
 BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
 RADIUS = 0.06
-FAR_AWAY = (0.0, 0.0, 0.0)
 WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
 
 
@@ -34,13 +32,13 @@ class TriangulationScene:
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
         self.eyes = [Eye(stage, "left", "L"), Eye(stage, "right", "R")]
-        self.baseline = stage.lines("/baseline", np.zeros((2, 3)), "ink", width=2.0)
+        self.baseline = stage.lines("/baseline", "ink", width=2.0)
         self.baseline_label = stage.label("/baseline/label", "", (0.0, -0.1, 0.45))
         self.points = {name: Shape(stage, f"/{name}", name) for name in METHODS}
         self.label = stage.group("/result")
         self.words = stage.label("/result/label", "", (0.0, 0.0, -0.22))
-        self.drop = stage.lines("/result/drop", np.zeros((2, 3)), "ghost", width=1.2)
-        self.gap = stage.lines("/gap", np.zeros((2, 3)), "held", width=5.0)
+        self.drop = stage.lines("/result/drop", "ghost", width=1.2)
+        self.gap = stage.lines("/gap", "held", width=5.0)
         self.gap_label = stage.label("/gap/label", "")
         self.grip = stage.grip("/point", 0.75 * RADIUS, halo=2.8)
         self.true_label = stage.label("/point/label", "true point", (0.0, 0.0, 0.1), anchor="bottom-right")
@@ -55,13 +53,13 @@ class TriangulationScene:
         half = 0.5 * p.baseline
         for eye, sight, x in zip(self.eyes, (s.sight_left, s.sight_right), (-half, half), strict=True):
             eye.draw(cameras, s, sight, x)
-        self.baseline.stroke((-half, 0.0, 1.0), (half, 0.0, 1.0))
+        self.baseline.stroke(((-half, 0.0, 1.0), (half, 0.0, 1.0)))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
         for name, shape in self.points.items():
             found = s.by_method[name].point
             shape.draw(None if found is None else found.tolist(), name == p.method, RADIUS)
-        at = FAR_AWAY if s.point is None else s.point.tolist()
+        at = ORIGIN if s.point is None else s.point.tolist()
         self.region.draw(p, s, at)
         self._gap(s)
         self._in_words(p, s, at, self.closeup.draw(p, s))
@@ -77,16 +75,12 @@ class TriangulationScene:
         self.closeup.point(name)
 
     def _held(self, s: TriangulationSolution) -> None:
-        self.grip.show(s.target is not None)
+        self.grip.place(None if s.target is None else s.target.tolist())
         self.true_label.show(s.true_point is not None)
-        if s.target is not None:
-            self.grip.pose(position=s.target.tolist())
 
     def _gap(self, s: TriangulationSolution) -> None:
         seen = s.by_method["midpoint"].point is not None and s.ray_gap > 1e-9 and s.point is not None
-        self.gap.show(seen)
-        if seen and s.closest_points is not None:
-            self.gap.stroke(*s.closest_points.tolist())
+        self.gap.stroke(s.closest_points.tolist() if seen and s.closest_points is not None else None)
 
     def _in_words(self, p: TriangulationParams, s: TriangulationSolution, at: Sequence[float], closeup: bool) -> None:
         """The result, and what the close-up says where there is one."""
@@ -94,7 +88,7 @@ class TriangulationScene:
         self.label.show(s.point is not None)
         x, y, z = at
         self.label.pose(position=(x, y, z))
-        self.drop.stroke((0.0, 0.0, 0.0), (0.0, 0.0, -z))
+        self.drop.stroke((ORIGIN, (0.0, 0.0, -z)))
         if not closeup:
             self.gap_label.pose(position=(x, y, z + 0.45))
             self.gap_label.text(gap_in_words(s))
@@ -118,13 +112,13 @@ class Eye:
         path = f"/{name}"
         self.name = name
         self.figure = CameraFigure(stage, path, name, letter)
-        stage.lines(f"{path}/post", [(0.0, 0.08, -0.12), (0.0, 1.0, -0.12)], "ghost", width=1.2)
+        stage.lines(f"{path}/post", "ghost", [(0.0, 0.08, -0.12), (0.0, 1.0, -0.12)], width=1.2)
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
-        self.ray = stage.lines(f"{path}/ray", np.zeros((2, 3)), name, width=1.8)
-        self.back = stage.lines(f"{path}/back", np.zeros((2, 3)), name, width=1.5, dash=(0.08, 0.08))
-        self.lit = stage.lines(f"{path}/lit", np.zeros((2, 3)), name, width=6.0)
+        self.ray = stage.lines(f"{path}/ray", name, width=1.8)
+        self.back = stage.lines(f"{path}/back", name, width=1.5, dash=(0.08, 0.08))
+        self.lit = stage.lines(f"{path}/lit", name, width=6.0)
         self.lit.show(False)
-        self.end = FAR_AWAY
+        self.end = ORIGIN
 
     def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
         self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
@@ -135,14 +129,12 @@ class Eye:
         self.pixel.scale(cameras.size)
         far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
         self.end = x * far, y * far, far
-        self.ray.stroke((0.0, 0.0, 0.0), self.end)
+        self.ray.stroke((ORIGIN, self.end))
         self.back.show(s.status == "behind")
         if s.status == "behind":
             back = max(0.0 if s.closest_points is None else s.closest_points.item(0, 1), -BACKWARD)
-            self.back.path([(0.0, 0.0, 0.0), (x * back, y * back, back)])
+            self.back.path([ORIGIN, (x * back, y * back, back)])
 
     def light(self, name: str) -> None:
         """Make the ray thick if it has that name."""
-        self.lit.show(name == self.name)
-        if name == self.name:
-            self.lit.stroke((0.0, 0.0, 0.0), self.end)
+        self.lit.stroke((ORIGIN, self.end) if name == self.name else None)

@@ -6,10 +6,8 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
-import numpy as np
-
 from geometry.arrays import Array
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 from sims.triangulation.params import NAMES, TriangulationParams
 from sims.triangulation.scene_region import SEEN_GAP, SIGMAS, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
@@ -33,7 +31,7 @@ class CloseUp:
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/closeup")
         self.glass = stage.ball("/closeup/glass", 1.0, "ghost", opacity=0.08, side="back")
-        self.string = stage.lines("/closeup/string", np.zeros((2, 3)), "ghost", width=1.2)
+        self.string = stage.lines("/closeup/string", "ghost", width=1.2)
         self.rays = stage.strokes("/closeup/rays", ("left", "right", "held"), width=2.0)
         self.shapes = {name: Shape(stage, f"/closeup/{name}", name) for name in METHODS}
         self.names = {name: stage.label(f"/closeup/{name}/label", NAMES[name]) for name in METHODS}
@@ -43,7 +41,6 @@ class CloseUp:
         self.region = Region(stage, "/closeup/uncertainty", 0.009, opacity=0.3)
         self.label = stage.label("/closeup/label", "")
         self.gap_label = stage.label("/closeup/gap_label", "")
-        self.radius = 0.0
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> bool:
         """Whether it is there."""
@@ -51,11 +48,12 @@ class CloseUp:
             self.node.show(False)
             return False
         depth = in_steps(s.depth)
-        self._resize(RADIUS * depth, HEIGHT * depth)
+        radius = RADIUS * depth
+        self._resize(radius, HEIGHT * depth)
         origin = s.point.tolist()
         places = {name: _from(origin, s.by_method[name].point) for name in METHODS}
         true = _from(origin, s.true_point)
-        times = self._magnification(s, [*places.values(), true])
+        times = _magnification(s, [*places.values(), true], radius)
         self.node.show(times >= LEAST)
         if times < LEAST:
             return False
@@ -63,12 +61,10 @@ class CloseUp:
         self.node.pose(position=(x, y, z + HEIGHT * depth))
         for name, shape in self.shapes.items():
             place = _larger(times, places[name])
-            shape.draw(place, name == p.method, DOT * self.radius)
-            self.names[name].show(place is not None and math.hypot(*place) > 0.15 * self.radius)
-        self.true.show(true is not None)
-        if true is not None:
-            self.true.pose(position=_larger(times, true))
-        self._rays(s, origin, times)
+            shape.draw(place, name == p.method, DOT * radius)
+            self.names[name].show(place is not None and math.hypot(*place) > 0.15 * radius)
+        self.true.place(_larger(times, true))
+        self._rays(s, origin, times, radius)
         self.region.draw(p, s, (0.0, 0.0, 0.0), times)
         self.label.text(f"close-up ×{times:g}" + (", 3σ" if p.show_ellipsoid else ""))
         self.gap_label.show(s.ray_gap > SEEN_GAP)
@@ -82,33 +78,31 @@ class CloseUp:
         self.lit.show(name == "true")
 
     def _resize(self, radius: float, height: float) -> None:
-        if radius == self.radius:
-            return
-        self.radius = radius
         self.glass.scale(radius)
         self.true.scale(0.8 * DOT * radius)
         self.lit.scale(1.4 * DOT * radius)
-        self.string.stroke((0.0, 0.0, -radius), (0.0, 0.0, -height))
+        self.string.stroke(((0.0, 0.0, -radius), (0.0, 0.0, -height)))
         self.label.pose(position=(0.0, 0.0, 1.15 * radius))
         self.gap_label.pose(position=(0.0, 0.0, -1.15 * radius))
         for name, label in self.names.items():
             label.pose(position=(0.0, 0.0, (-3.0 if name == "midpoint" else 3.0) * DOT * radius))
 
-    def _magnification(self, s: TriangulationSolution, places: Sequence[Place | None]) -> float:
-        """The largest round one at which everything still fits the glass."""
-        longest = 0.0 if s.ellipsoid_axes is None else SIGMAS * s.ellipsoid_axes.item(0)
-        room = self.radius / max(s.ray_gap, longest, *(math.hypot(*place) for place in places if place is not None))
-        return MAGNIFICATIONS[max(bisect_right(MAGNIFICATIONS, room) - 1, 0)]
-
-    def _rays(self, s: TriangulationSolution, origin: Place, times: float) -> None:
+    def _rays(self, s: TriangulationSolution, origin: Place, times: float, radius: float) -> None:
         if s.closest_points is None:
             return
         near = [_larger(times, _from(origin, point)) or origin for point in s.closest_points]
         left, right = (
-            chord(at, (x, 1.0, -down), self.radius)
+            chord(at, (x, 1.0, -down), radius)
             for at, (x, down) in zip(near, (s.sight_left, s.sight_right), strict=True)
         )
         self.rays.draw((left, right, near))
+
+
+def _magnification(s: TriangulationSolution, places: Sequence[Place | None], radius: float) -> float:
+    """The largest round one at which everything still fits the glass."""
+    longest = 0.0 if s.ellipsoid_axes is None else SIGMAS * s.ellipsoid_axes.item(0)
+    room = radius / max(s.ray_gap, longest, *(math.hypot(*place) for place in places if place is not None))
+    return MAGNIFICATIONS[max(bisect_right(MAGNIFICATIONS, room) - 1, 0)]
 
 
 def _from(origin: Place, point: Array | None) -> Place | None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from geometry.arrays import Array
 from sims.kit.readout import quantity
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 from sims.triangulation.params import TriangulationParams
-from sims.triangulation.solution import NO_POINTS, TriangulationSolution
+from sims.triangulation.solution import TriangulationSolution
 
 SIGMAS = 3.0
 SEEN_GAP = 0.0005
@@ -32,15 +31,11 @@ class Region:
     def __init__(self, stage: Stage, path: str, dot: float, opacity: float) -> None:
         self.node = stage.group(path)
         self.ball = stage.ball(f"{path}/ellipsoid", 1.0, "ink", opacity=opacity)
-        self.cloud = stage.cloud(f"{path}_cloud", NO_POINTS, "ink", size=dot)
-        self.shown: tuple[Array, Array | None, float] = (NO_POINTS, None, 0.0)
+        self.cloud = stage.cloud(f"{path}_cloud", "ink", size=dot)
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution, at: Sequence[float], times: float = 0.0) -> None:
         """With the ellipsoid at a place; with `times`, in a node that stands for the result."""
-        origin = s.point if times and len(s.cloud) else None
-        if s.cloud is not self.shown[0] or origin is not self.shown[1] or times != self.shown[2]:
-            self.shown = s.cloud, origin, times
-            self.cloud.points(s.cloud if origin is None else times * (s.cloud - origin))
+        self.cloud.points(s.cloud if s.point is None or not times else times * (s.cloud - s.point))
         self.node.show(p.show_ellipsoid and s.ellipsoid_axes is not None and not s.vague)
         if s.ellipsoid_axes is None or s.ellipsoid_orientation is None:
             return

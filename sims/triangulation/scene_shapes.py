@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import trimesh
 
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 from sims.triangulation.params import Method
 from sims.triangulation.solution import METHODS
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from geometry import GeometryError
 from sims.kit.params import Params, choice, number
 from sims.kit.sim import Action, Sim, Step, View
-from sims.kit.stage import Stage
+from sims.kit.scene.stage import Stage
 
 IMPOSSIBLE = 13.0
 """At this size there is no solution."""

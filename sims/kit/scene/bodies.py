@@ -30,9 +30,12 @@ def _slab(outline: list[tuple[float, float]], thickness: float) -> trimesh.Trime
     return hull
 
 
-@lru_cache(maxsize=1)
-def aircraft() -> dict[str, trimesh.Trimesh]:
-    """An aircraft of length 2, nose +X, left wing +Y, fin +Z: `hull`, and `mark`, the tip of the left wing."""
+@lru_cache(maxsize=4)
+def aircraft(scale: float = 1.0) -> dict[str, trimesh.Trimesh]:
+    """An aircraft of length 2, or `scale` times that; nose +X, left wing +Y, fin +Z.
+
+    `hull`, and `mark`, the tip of the left wing.
+    """
     fuselage = icosphere(subdivisions=3).apply_scale((0.86, 0.13, 0.13))
     nose = cone(radius=0.085, height=0.3, sections=24)
     nose.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
@@ -45,7 +48,7 @@ def aircraft() -> dict[str, trimesh.Trimesh]:
     fin.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
     mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
     hull = joined([fuselage, nose, canopy, left, right, tail, fin])
-    return {"hull": hull, "mark": mark}
+    return {"hull": hull.apply_scale(scale), "mark": mark.apply_scale(scale)}
 
 
 @lru_cache(maxsize=3)

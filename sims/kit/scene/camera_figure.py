@@ -6,10 +6,9 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-import trimesh
 
-from sims.kit import bodies
-from sims.kit.stage import Stage
+from sims.kit.scene import bodies
+from sims.kit.scene.stage import Stage
 
 BANDS = {"left": 1, "right": 2}
 PICTURE_WIDTH = 0.4
@@ -29,11 +28,9 @@ class CameraFigure:
         ]
         if "mark" in parts:
             self._solids.append(stage.mesh(f"{name}/mark", parts["mark"], "page"))
-        self.edges = stage.lines(f"{name}/frustum", np.zeros((9, 3)), role, width=1.5)
-        flat = trimesh.Trimesh(np.eye(4, 3), [[0, 1, 2], [0, 2, 3]], process=False)
-        self.picture = stage.mesh(f"{name}/picture", flat, role, opacity=0.12, side="double", flat=True)
+        self.edges = stage.lines(f"{name}/frustum", role, width=1.5)
+        self.picture = stage.sheet(f"{name}/picture", role, opacity=0.12)
         self._letter = stage.label(f"{name}/letter", letter)
-        self._corners: npt.NDArray[np.float64] | None = None
 
     def draw(
         self, corners: npt.NDArray[np.float64], size: float = 1.0, back: npt.NDArray[np.float64] | None = None
@@ -45,12 +42,10 @@ class CameraFigure:
         for solid in self._solids:
             solid.scale(size)
         self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
-        if corners is not self._corners:
-            self._corners = corners
-            edges = np.zeros((8, 2, 3))
-            edges[:4, 1] = edges[4:, 0] = corners
-            edges[4:, 1] = np.roll(corners, -1, axis=0)
-            if back is not None:
-                edges[:4, 0] = back
-            self.edges.pieces(edges)
-            self.picture.vertices(corners)
+        edges = np.zeros((8, 2, 3))
+        edges[:4, 1] = edges[4:, 0] = corners
+        edges[4:, 1] = np.roll(corners, -1, axis=0)
+        if back is not None:
+            edges[:4, 0] = back
+        self.edges.pieces(edges)
+        self.picture.vertices(corners)

@@ -1,0 +1,30 @@
+"""From where the scene is looked at."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from sims.kit.types import Vector
+
+FIELD = 0.7
+"""Vertical field of view in radians, as boot.js sets it."""
+SHEET = 0.55
+"""Share of a phone's height that viser's bottom sheet leaves free."""
+
+
+def look(camera: Any, position: Vector, look_at: Vector, radius: float, *, width: float, phone: bool) -> None:
+    """Look from a place at another, or from so far behind it that a sphere of `radius` fits.
+
+    `width`: pixels that panels leave to the scene.
+    """
+    seen = SHEET if phone else 1.0  # of the height; boot.js does the same for the first view
+    aspect = min(camera.image_width, width) / (seen * camera.image_height)
+    half = math.tan(0.5 * FIELD) * min(1.0, aspect) * seen
+    away = np.subtract(position, look_at)
+    away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))
+    middle = np.subtract(look_at, (0.0, 0.0, 0.75 * radius if phone else 0.0))
+    camera.position = middle + away
+    camera.look_at = middle
