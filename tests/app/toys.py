@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 from geometry import GeometryError
 from sims.kit.params import Params, choice, number
-from sims.kit.sim import Action, Sim, Step, View
 from sims.kit.scene.stage import Stage
+from sims.kit.sim import Action, Sim, Step, View
 
 IMPOSSIBLE = 13.0
 """At this size there is no solution."""
