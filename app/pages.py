@@ -79,11 +79,17 @@ def _is_view(text: str) -> bool:
     return len(values) == 6 and all(math.isfinite(v) and abs(v) < 1e4 for v in values) and values[:3] != values[3:]
 
 
-def viewer(request: Request, sim: AnySim, params: Params, largest: int, *, watching: bool) -> Response:
-    """The page of a session in a state: viser's client with our companion."""
+def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: str, key: str = "") -> Response:
+    """The page of a session in a state: viser's client with our companion. Without its key it only watches.
+
+    The page alone holds the key: its address bar shows where anybody gets a room of their own in the same state.
+    """
+    place = f"{base(request)}/sims/{sim.slug}"
+    path = f"{place}/s/{room}/{key}/" if key else f"{place}/s/{room}/"
     view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
-        "slug": sim.slug, "title": sim.title, "watching": watching,
+        "slug": sim.slug, "title": sim.title, "watching": not key,
+        "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "files": None if sim.files is None else {"largest": largest},
         "label": {"ink": DARK.ink, "plate": DARK.page},

@@ -133,19 +133,21 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         _params(sim, request)
         return pages.render(request, "sim.html", sim=sim, query=request.url.query)
 
-    @app.get("/sims/{slug}/embed", include_in_schema=False)
+    @app.get("/sims/{slug}/embed", response_class=HTMLResponse, include_in_schema=False)
     async def embed(request: Request, slug: str) -> Response:
         sim = sim_or_404(slug)
-        _params(sim, request)
         key = new_key()
-        query = f"?{request.url.query}" if request.url.query else ""
-        return RedirectResponse(f"{pages.base(request)}/sims/{slug}/s/{room_of(key)}/{key}/{query}", 307)
+        return joined(request, sim, room_of(key), key)
 
     @app.get("/sims/{slug}/s/{room}/{key}/", response_class=HTMLResponse, include_in_schema=False)
     async def controlled(request: Request, slug: str, room: str, key: str) -> Response:
         sim = sim_or_404(slug)
         if room_of(key) != room:
             raise HTTPException(404, "This link's key doesn't fit its room.")
+        return joined(request, sim, room, key)
+
+    def joined(request: Request, sim: AnySim, room: str, key: str) -> Response:
+        """The page of a room, with control of it."""
         params = _params(sim, request)
         known = sessions.find(sim, room)
         try:
@@ -154,7 +156,7 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
             raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
         if known and pages.split_options(request.query_params.multi_items())[0]:
             session.change(params.model_dump(), live=False)
-        return pages.viewer(request, sim, session.params, largest, watching=False)
+        return pages.viewer(request, sim, session.params, largest, room, key)
 
     @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
     async def watched(request: Request, slug: str, room: str) -> Response:
@@ -162,7 +164,7 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
             raise HTTPException(404, "There is no such room.")
         sim = sim_or_404(slug)
         known = sessions.find(sim, room)
-        return pages.viewer(request, sim, known.params if known else sim.params(), largest, watching=True)
+        return pages.viewer(request, sim, known.params if known else sim.params(), largest, room)
 
     @app.get("/viser/{fingerprint}/{name}", include_in_schema=False)
     async def client(request: Request, fingerprint: str, name: str) -> Response:

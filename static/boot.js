@@ -8,9 +8,12 @@
   const viewer = Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
   const theme = given.get("theme");
   const dark = theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-  const path = location.pathname.replace(/\/?$/, "/");
-  const origin = location.origin === "null" ? new URL(location.href).origin : location.origin;
-  const socket = origin.replace(/^http/, "ws") + path;
+  // The room and its key are in the page, never in its address; a reload goes on in the room that it left.
+  const reloaded = performance.getEntriesByType("navigation")[0]?.type === "reload";
+  const path = (reloaded && history.state?.path) || sim.path;
+  const opened = history.state?.opened ?? location.search;
+  const place = new URL(path, location.href).href; // location.origin is "null" in a sandboxed frame
+  const socket = place.replace(/^http/, "ws");
 
   // A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits.
   const view = given.get("view")?.split(",").map(Number) ?? sim.view;
@@ -71,7 +74,7 @@
   const replace = history.replaceState.bind(history);
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
 
-  window.sim3 = { ...sim, Query, viewer, dark, path: socket, search: location.search, eye, target };
+  window.sim3 = { ...sim, Query, viewer, dark, place, socket, path, opened, search: location.search, eye, target };
   // Else phones widen the page for a menu that stands out at its side for a moment, the menu grows with it, and so on.
   document.querySelector("meta[name=viewport]").content += ", minimum-scale=1";
   document.documentElement.style.setProperty("--s3-still", `url(${sim.still[dark ? "dark" : "light"]})`);

@@ -7,8 +7,8 @@ const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 const options = ["view", "controls", "theme"];
 const kept = new Query();
 for (const [name, value] of new Query(sim.search)) if (options.includes(name)) kept.append(name, value);
-const opened = stateQuery(sim.search);
-let query = opened;
+const opened = stateQuery(sim.opened);
+let query = stateQuery(sim.search);
 let socket = null;
 let retryAfter = 250;
 let state = null;
@@ -29,19 +29,22 @@ function readable(search) {
   return search.toString().replaceAll("%2C", ",");
 }
 
-function address() {
+function withState(path) {
   const search = withOptions(query);
-  return location.pathname + (search ? "?" + search : "");
+  return path + (search ? "?" + search : "");
 }
 
+// What the address must not hold stays beside it: the room, for a reload, and the state that Reset leads back to.
 function showAddress() {
-  history.replaceState(null, "", address());
+  try {
+    history.replaceState({ path: sim.path, opened }, "", withState(sim.address));
+  } catch { /* some browsers let a sandboxed frame change no more than its query */ }
 }
 
 // --- Channel -----------------------------------------------------------------------------------------------------
 
 function connect() {
-  socket = new WebSocket(`${sim.path}channel?viewer=${sim.viewer}`);
+  socket = new WebSocket(`${sim.socket}channel?viewer=${sim.viewer}`);
   socket.onopen = () => {
     retryAfter = 250;
     send({
@@ -401,18 +404,13 @@ document.addEventListener("click", (event) => {
   if (kind === "share") share();
   else if (kind === "picture") savePicture();
   else if (kind === "keys") showKeys();
+  else if (kind === "download") download(`${sim.place}result/${event.target.value}`, event.target.value);
   else if (kind === "give-up") bringing.request.abort();
   else if (kind === "close") event.target.closest("dialog").close();
 });
 
-function shareLink() {
-  const path = location.pathname.replace(/\/s\/.*/, "/embed");
-  const search = withOptions(query);
-  return path + (search ? "?" + search : "");
-}
-
 async function share() {
-  const link = new URL(shareLink(), location.href).href;
+  const link = new URL(withState(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, "/embed")), location.href).href;
   try {
     // Frames of other sites may not; asking all the same would leave an error in the console.
     if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
@@ -429,10 +427,14 @@ async function share() {
 function savePicture() {
   const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
   requestAnimationFrame(() => {
-    const link = element("a", { href: canvas.toDataURL("image/png"), download: `${sim.slug}.png` });
-    link.click();
-    link.remove();
+    download(canvas.toDataURL("image/png"), `${sim.slug}.png`);
   });
+}
+
+function download(href, name) {
+  const link = element("a", { href, download: name });
+  link.click();
+  link.remove();
 }
 
 // --- Files that a learner brings: sent as they are, with how far they are; the state comes over the channel ----------
@@ -462,7 +464,7 @@ function bring(file) {
   }
   const request = (bringing.request = new XMLHttpRequest());
   const failed = (words) => say(`⚠ “${file.name}”: ${words} Nothing has changed.`);
-  request.open("POST", `file?name=${encodeURIComponent(file.name)}`);
+  request.open("POST", `${sim.place}file?name=${encodeURIComponent(file.name)}`);
   request.upload.onprogress = (event) => say(`Sending “${file.name}”, ${size}…`, event.loaded / event.total * 0.999);
   request.upload.onload = () => say(`Reading “${file.name}”, ${size}…`, 1);
   request.onerror = () => failed("The connection broke off.");
@@ -524,4 +526,5 @@ addEventListener("message", (event) => {
   else if (type === "sim3:get") send({ type: "get" });
 });
 
+showAddress();
 connect();

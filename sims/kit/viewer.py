@@ -378,9 +378,9 @@ def _unit(model: type[Params], name: str) -> str:
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:
-    """The buttons that every sim has, and links to what can be had as a file."""
-    links = "".join(
-        f'<a class="s3-button" href="result/{escape(name)}" download="{escape(name)}">Download {escape(name)}</a>'
+    """The buttons that every sim has, and those for what can be had as a file."""
+    files = "".join(
+        f'<button type="button" data-s3="download" value="{escape(name)}">Download {escape(name)}</button>'
         for name in downloads
     )
     return (
@@ -388,7 +388,7 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="share">Share link</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
-        f"{links}</div>"
+        f"{files}</div>"
     )
 
 
