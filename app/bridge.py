@@ -14,12 +14,13 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl
 
 import msgspec
 import viser
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from app import origins
 from app.commands import Answer, Commands
 from app.inbox import Ended, Inbox, Read, Strangers
 from app.messages import GuiUpdateMessage, decoder
@@ -35,6 +36,10 @@ log = logging.getLogger("sim3")
 HELLO_WITHIN = 2.0
 SEEN_WITHIN = 30.0
 """Seconds that viser's websocket may be open before it shows something."""
+WRONG_ORIGIN = 4403
+"""Code with which a websocket is closed whose page comes from elsewhere, as far as the server can see."""
+MOST_WARNINGS = 100
+"""Different refusals that the log tells of."""
 Number = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
@@ -134,19 +139,23 @@ class Link:
 class Bridge:
     """Connects browsers to sessions."""
 
-    def __init__(self, host: ViserHost, sessions: Sessions, origins: str) -> None:
+    def __init__(self, host: ViserHost, sessions: Sessions, further: str) -> None:
         self.host = host
         self.sessions = sessions
         self.refusals: Counter[str] = Counter()
         self.strangers = Strangers(self.refusals)
-        self._origins = origins.split()
+        self._further = {origins.parse(text) for text in further.split()}
+        self._warned: set[str] = set()
         self._visits: dict[str, Visit] = {}
         host.server.on_client_connect(self._on_connect)
 
     async def scene(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
         """viser's websocket: check each message and hand it on, until the page goes."""
-        if not self._same_origin(ws) or PROTOCOL not in ws.scope.get("subprotocols", ()):
-            await self._refuse(ws, "origin" if not self._same_origin(ws) else "protocol")
+        if PROTOCOL not in ws.scope.get("subprotocols", ()):
+            self.refusals["protocol"] += 1
+            await ws.close(1008)
+            return
+        if not await self._same_origin(ws, PROTOCOL):
             return
         visit = self._visit(ws, sim, room, watching)
         await ws.accept(subprotocol=PROTOCOL)
@@ -225,8 +234,7 @@ class Bridge:
 
     async def channel(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
         """The channel: JSON both ways."""
-        if not self._same_origin(ws):
-            await self._refuse(ws, "origin")
+        if not await self._same_origin(ws):
             return
         visit = self._visit(ws, sim, room, watching)
         await ws.accept()
@@ -345,16 +353,22 @@ class Bridge:
         if not visit.sockets:
             self._visits.pop(visit.name, None)
 
-    def _same_origin(self, ws: WebSocket) -> bool:
-        """Own pages, sandboxed frames (whose origin is 'null') and programs; the key in the path is the secret."""
-        origin = ws.headers.get("origin")
-        if origin is None or origin == "null" or origin in self._origins:
-            return True
-        return urlsplit(origin).netloc == ws.headers.get("host")
+    async def _same_origin(self, ws: WebSocket, protocol: str | None = None) -> bool:
+        """Whether the page may open a websocket; if not, it is told why. The key in the path is the secret.
 
-    async def _refuse(self, ws: WebSocket, why: str) -> None:
-        self.refusals[why] += 1
-        await ws.close(1008)
+        A browser shows a page nothing of a websocket that isn't accepted, so it is, and closed with a reason.
+        """
+        wrong = origins.mismatch(ws.headers, ws.url.scheme == "wss", self._further)
+        if wrong is None:
+            return True
+        self.refusals["origin"] += 1
+        if (line := wrong.line()) not in self._warned and len(self._warned) < MOST_WARNINGS:
+            self._warned.add(line)  # once: pages try again every second
+            log.warning("a websocket was refused. %s", line)
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            await ws.accept(subprotocol=protocol)
+            await ws.close(WRONG_ORIGIN, wrong.reason())
+        return False
 
 
 def _state(sim: Sim[Any, Any], query: str) -> Params:
