@@ -95,7 +95,7 @@ def mismatch(headers: Headers, secure: bool, further: Collection[Origin]) -> Mis
     return None
 
 
-HAND_ON = "The proxy in front must hand on the {} that the browser asked for (see README), or SIM3_ORIGINS name the page's."
+HAND_ON = "The proxy in front must hand on the browser's own {} (see README), or SIM3_ORIGINS name the page's."
 BELIEVE = "Its X-Forwarded-Host would fit, but is believed only where FORWARDED_ALLOW_IPS names the proxy's address."
 
 

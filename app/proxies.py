@@ -49,4 +49,4 @@ class Prefix:
 
     def _is_whole(self, path: str) -> bool:
         rest = path.removeprefix(self._prefix)
-        return rest != path and (not rest or rest[0] == "/" and rest.split("/")[1] in self._own)
+        return rest != path and (not rest or (rest[0] == "/" and rest.split("/")[1] in self._own))

@@ -40,8 +40,13 @@ def error_message(sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any]
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
 
 
+def question(complaint: Complaint) -> str:
+    """Asks whether something else was meant, where that may be."""
+    return f" (did you mean {complaint.meant}?)" if complaint.meant else ""
+
+
 def refused(words: str, *found: Complaint) -> dict[str, Any]:
     """An error message; without words of its own it says what is wrong with each parameter."""
     fields = [{"parameter": name, "received": received, "allowed": allowed} for name, received, allowed in found]
-    said = words or "; ".join(f"{name}: got {received}, allowed: {allowed}" for name, received, allowed in found)
+    said = words or "; ".join(f"{c[0]}: got {c[1]}{question(c)}, allowed: {c[2]}" for c in found)
     return {"type": "error", "message": clipped(said, 400), "errors": fields[:20]}
