@@ -39,6 +39,7 @@ run: $(VENV)/run.stamp
 
 test: $(VENV)/test.stamp
 	@$(BIN) -m tests.browser --ensure
+	@$(BIN) -m tests.proxies
 	@echo "Running the tests without a browser"
 	@$(BIN) -m pytest -m "not e2e" --numprocesses auto $(ARGS) || $(NONE_CHOSEN)
 	@echo "Running the tests in a browser"

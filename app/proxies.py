@@ -45,6 +45,8 @@ class Prefix:
             if not self._is_whole(scope["path"]):
                 scope["path"] = self._prefix + scope["path"]
                 scope["raw_path"] = self._prefix.encode() + (scope.get("raw_path") or b"")
+            elif scope["path"] == self._prefix:
+                scope["path"] += "/"
         await self._app(scope, receive, send)
 
     def _is_whole(self, path: str) -> bool:

@@ -16,7 +16,7 @@
   const socket = place.replace(/^http/, "ws");
 
   // A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits.
-  const view = given.get("view")?.split(",").map(Number) ?? sim.view;
+  const view = given.get("view")?.replaceAll("−", "-").split(",").map(Number) ?? sim.view;
   const eye = view.slice(0, 3);
   const target = view.slice(3);
   const phone = innerWidth <= 576;
