@@ -5,12 +5,9 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
 
-import fastapi_offline  # carries Swagger UI, so that /docs needs no other host
 from fastapi import FastAPI, HTTPException, Request, WebSocket
-from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import GZipMiddleware
@@ -18,6 +15,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from app import links, pages
 from app.api import OpenApi, add_api, in_api
 from app.bridge import Bridge
+from app.docs import described
 from app.files import ADDRESS, add_files
 from app.pages import sim_or_404
 from app.proxies import Forwarded, Prefix
@@ -68,18 +66,9 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 
-    app.mount("/swagger", StaticFiles(directory=Path(fastapi_offline.__file__).parent / "static"), name="swagger")
-
     @page(app, "/docs")
     async def docs(request: Request) -> Response:
-        here = pages.base(request)
-        return get_swagger_ui_html(
-            openapi_url=f"{here}/openapi.json",
-            title="Sim3 API",
-            swagger_js_url=f"{here}/swagger/swagger-ui-bundle.js",
-            swagger_css_url=f"{here}/swagger/swagger-ui.css",
-            swagger_favicon_url=pages.static(request, "icons/sim3.svg"),
-        )
+        return pages.render(request, "docs.html", described=described())
 
     @app.api_route("/healthz", methods=["GET", "HEAD"], include_in_schema=False)
     async def healthz() -> dict[str, Any]:

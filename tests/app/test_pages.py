@@ -32,6 +32,7 @@ ADDRESSES = {
     "dark": f"/sims/{SIM.slug}?theme=dark",
     "bad link": f"/sims/{SIM.slug}?colour=red&view=1,2&controls=0",
     "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
+    "documentation": "/docs",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
 }
@@ -298,6 +299,7 @@ def stand_in(route: Route) -> None:
 @each_address
 def test_axe_finds_nothing(page: Page, server: Server, address: str) -> None:
     page.goto(server.url + address)
+    page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
         found = Axe().run(page, {"exclude": [["iframe"]]}, {"resultTypes": ["violations"]})

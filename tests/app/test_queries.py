@@ -14,7 +14,7 @@ from sims import SIMS
 from tests.app.conftest import Local
 from tests.app.test_security import page_data
 
-TRACKED = "utm_source=mail&utm_campaign=x&fbclid=1&gclid=2&mc_cid=3&mc_eid=4&msclkid=5&_ga=6&UTM_Medium=7&igshid=8&gad_source=9"
+TRACKED = "utm_source=mail&fbclid=1&gclid=2&mc_cid=3&mc_eid=4&msclkid=5&_ga=6&UTM_Medium=7&igshid=8&gad_source=9"
 PAGES = ("/sims/euler-angles", "/sims/euler-angles/embed")
 
 
