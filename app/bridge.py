@@ -53,6 +53,7 @@ class Hello(msgspec.Struct, tag="hello", tag_field="type", forbid_unknown_fields
     query: Annotated[str, msgspec.Meta(max_length=4000)]
     opened: Annotated[str, msgspec.Meta(max_length=4000)] = ""
     """The query that the page was opened with, to which a reset returns."""
+    height: int = 800
 
 
 class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fields=True):
@@ -93,13 +94,19 @@ class Cancel(msgspec.Struct, tag="cancel", tag_field="type", forbid_unknown_fiel
     """Gives up what is being worked on."""
 
 
+class View(msgspec.Struct, tag="view", tag_field="type", forbid_unknown_fields=True):
+    """The page looks from another place: viewpoint and looked-at place, x, y, z each."""
+
+    view: Annotated[list[Number], msgspec.Meta(min_length=6, max_length=6)]
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state, and for its solution too."""
 
     solution: bool = False
 
 
-channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get)
+channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get | View)
 
 
 @dataclass
@@ -220,7 +227,7 @@ class Bridge:
             # A page whose first message is late may still bring its state.
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-            look = Look(hello.dark, hello.controls, visit.watching, hello.width)
+            look = Look(hello.dark, hello.controls, visit.watching, hello.width, hello.height)
             link.commands = Commands(session, lambda message: visit.tell(message))
             link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params)
             session.join(link.viewer)
@@ -309,6 +316,10 @@ class Bridge:
                 answer(session.state())
             return
         commands = Commands(session, answer)
+        if isinstance(message, View):  # of this page alone
+            if visit.viewer is not None:
+                commands.attempt(visit.viewer.look_from, message.view)
+            return
         if visit.watching and isinstance(message, Point):  # for their own eyes
             if visit.viewer is not None:
                 commands.attempt(visit.viewer.point, message.name)

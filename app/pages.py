@@ -58,6 +58,7 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: st
     """
     place = f"{base(request)}/sims/{sim.slug}"
     path = f"{place}/s/{room}/{key}/" if key else f"{place}/s/{room}/"
+    client = f"{base(request)}/viser/{viser_client.fingerprint()}"
     view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
         "slug": sim.slug, "title": sim.title, "watching": not key,
@@ -65,9 +66,12 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: st
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "files": None if sim.files is None else {"largest": largest},
         "label": {"ink": DARK.ink, "plate": DARK.page},
+        "scripts": [
+            {"src": f"{client}/loader.js", "crossOrigin": "anonymous", "async": False},
+            {"src": static(request, "sim.js"), "type": "module", "async": False},
+        ],
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
-    client = f"{base(request)}/viser/{viser_client.fingerprint()}"
     response = render(request, "viewer.html", sim=sim, data=data, client=client)
     response.headers["cache-control"] = "no-store"
     return response

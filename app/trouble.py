@@ -33,7 +33,7 @@ def error_message(sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any]
     if isinstance(error, ValidationError):
         return refused("", *(complaint for _, complaint in complaints(sim.params, given or {}, error)))
     if isinstance(error, GeometryError):
-        known = error.argument in sim.params.model_fields
+        known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
     place = traceback.extract_tb(error.__traceback__)[-1]
     log.error("%s can't go on from here: %r in %s, line %s", sim.slug, error, place.filename, place.lineno)

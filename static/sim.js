@@ -48,13 +48,14 @@ function connect() {
   socket.onopen = () => {
     retryAfter = 250;
     send({
-      type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth,
+      type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth, height: innerHeight,
       controls: kept.get("controls") !== "0", query, opened,
     });
   };
   socket.onmessage = (event) => receive(JSON.parse(event.data));
-  socket.onclose = () => {
+  socket.onclose = (event) => {
     socket = null;
+    lost(event.code === REFUSED ? event.reason : "");
     showWork({ text: "" });
     setTimeout(connect, retryAfter);
     retryAfter = Math.min(retryAfter * 2, 1500); // within the time that the server waits before it draws
@@ -67,22 +68,57 @@ function send(message) {
 
 function receive(message) {
   if (message.type === "state") {
+    found();
     state = message;
     query = message.query;
     showAddress();
     speak(message.text);
     describeScene(message.text);
     goLive();
-    post({ type: "sim3:state", params: message.params, query });
+    const { params, solution } = message;
+    post({ type: "sim3:state", params, query, ...(solution === undefined ? {} : { solution }) });
+    afterState.splice(0).forEach((then) => then());
   } else if (message.type === "point") {
     theirs = message.name;
     light();
   } else if (message.type === "error") {
     notify("⚠ " + message.message);
-    post({ type: "sim3:error", message: message.message });
+    post({ type: "sim3:error", message: message.message, errors: message.errors });
   } else if (message.type === "work") {
     showWork(message);
   }
+}
+
+// --- No connection: after a while in words, for whoever runs the server --------------------------------------------
+
+const REFUSED = 4403; // the server says what is wrong with what it saw
+const PATIENCE = 5000;
+let missing = 0;
+let why = "";
+
+function lost(reason) {
+  why = reason || why;
+  if (reason) return showTrouble();
+  missing ||= setTimeout(showTrouble, PATIENCE);
+}
+
+function found() {
+  clearTimeout(missing);
+  missing = 0;
+  why = "";
+  document.querySelector(".s3-trouble")?.remove();
+}
+
+function showTrouble() {
+  const box = document.querySelector(".s3-trouble") ?? element("section", { class: "s3-trouble", role: "alert" });
+  const words = [
+    ["h2", state ? "The connection to the server is lost" : "This sim can’t reach its server"],
+    ["p", state ? "It tries again by itself, and goes on where you are." : "It tries again by itself. If it stays like this, tell whoever runs the server:"],
+    ["p", why || (state ? "" : `The page came, but the websocket to ${new URL(sim.place).host} doesn’t open. A proxy on the way must let websockets through (Upgrade and Connection), and hand on the Host that the browser asked for.`)],
+  ];
+  if (box.textContent === words.map(([, text]) => text).join("")) return;
+  box.replaceChildren();
+  for (const [tag, text] of words) if (text) element(tag, {}, box).textContent = text;
 }
 
 // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
@@ -131,9 +167,18 @@ function showWork({ text, done, cancel }) {
   workCancel.hidden = !cancel || sim.watching;
 }
 
+// viser makes a new canvas when it connects anew, and leaves the old one for a while: the scene is what is seen.
+function sceneCanvas() {
+  const area = (canvas) => canvas.clientWidth * canvas.clientHeight;
+  return [...document.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
+}
+
 function describeScene(text) {
-  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  const canvas = sceneCanvas();
   if (!canvas) return;
+  for (const old of document.querySelectorAll("canvas[role]")) {
+    if (old !== canvas) old.removeAttribute("role"), old.removeAttribute("aria-label");
+  }
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${sim.title}, 3D scene. ${text}`);
 }
@@ -394,7 +439,7 @@ function goLive() {
   requestAnimationFrame(() => requestAnimationFrame(() => document.querySelector(".s3-still").remove()));
   describeScene(state.text);
   post({ type: "sim3:ready" });
-  post({ type: "sim3:height", height: document.documentElement.scrollHeight });
+  askForHeight();
 }
 
 // --- Toolbar -----------------------------------------------------------------------------------------------------
@@ -425,7 +470,7 @@ async function share() {
 }
 
 function savePicture() {
-  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  const canvas = sceneCanvas();
   requestAnimationFrame(() => {
     download(canvas.toDataURL("image/png"), `${sim.slug}.png`);
   });
@@ -454,6 +499,8 @@ function showBringing() {
 function say(words, share = null) {
   Object.assign(bringing, { words, share });
   showBringing();
+  // A file can be dropped anywhere, also while the controls of files are folded away.
+  if (!document.querySelector(".s3-bring")?.checkVisibility()) notify(words);
 }
 
 function bring(file) {
@@ -518,13 +565,113 @@ function post(message) {
   if (embedded) window.parent.postMessage({ slug: sim.slug, ...message }, "*");
 }
 
+const afterState = []; // what waits for the next state
+
+function refuse(parameter, received, allowed) {
+  const errors = [{ parameter, received: JSON.stringify(received) ?? "nothing", allowed }];
+  post({ type: "sim3:error", message: `${parameter}: got ${errors[0].received}, allowed: ${allowed}`, errors });
+}
+
+function isView(view) {
+  return Array.isArray(view) && view.length === 6 && view.every((v) => typeof v === "number" && Math.abs(v) < 1e4)
+    && view.slice(0, 3).some((v, i) => v !== view[i + 3]);
+}
+
+// The theme and the controls are the server's work too: the page begins anew with them, in its room, once the server
+// has what else was set.
+function setPage({ theme, controls, view }) {
+  const wanted = {};
+  if (theme === "light" || theme === "dark") wanted.theme = theme;
+  else if (theme !== undefined) refuse("theme", theme, "light or dark");
+  if (typeof controls === "boolean") wanted.controls = controls ? "1" : "0";
+  else if (controls !== undefined) refuse("controls", controls, "true or false");
+  const now = { theme: sim.dark ? "dark" : "light", controls: kept.get("controls") ?? "1" };
+  const anew = Object.entries(wanted).filter(([name, value]) => value !== now[name]);
+  for (const [name, value] of anew) kept.set(name, value);
+  if (isView(view)) {
+    chosen = true;
+    kept.set("view", view.join(","));
+    send({ type: "view", view });
+  } else if (view !== undefined) refuse("view", view, "six numbers: viewpoint x, y, z and look-at x, y, z");
+  showAddress();
+  if (!anew.length) return;
+  afterState.push(() => location.reload());
+  send({ type: "get" });
+}
+
 addEventListener("message", (event) => {
   if (event.source !== window.parent || !embedded || typeof event.data !== "object" || event.data === null) return;
-  const { type, params, name } = event.data;
-  if (type === "sim3:set") send({ type: "set", params });
-  else if (type === "sim3:action") send({ type: "action", name });
-  else if (type === "sim3:get") send({ type: "get" });
+  const { type, params, name, seconds, solution, theme, controls, view, subject, context, action } = event.data;
+  const page = theme !== undefined || controls !== undefined || view !== undefined;
+  if (type === "sim3:set") {
+    if (params !== undefined || !page) send({ type: "set", params, ...(seconds === undefined ? {} : { seconds }) });
+    if (page) setPage({ theme, controls, view });
+  } else if (type === "sim3:action") send({ type: "action", name });
+  else if (type === "sim3:get") send({ type: "get", ...(solution ? { solution: true } : {}) });
+  else if (subject === "lti.capabilities.response") {
+    heightTo.canvas = event.data.supported_messages?.some((message) => message.subject === "lti.frameResize");
+    tellHeight();
+  } else if (context === "h5p" && action === "hello") {
+    heightTo.h5p = true;
+    tellHeight();
+  } else if (context === "h5p" && action === "resizePrepared") {
+    postRaw({ context: "h5p", action: "resize", scrollHeight: wantedHeight() });
+  }
 });
 
+// --- How high the frame would best be: for course pages, and for Canvas and H5P, if they answer in their own words --
+
+const heightTo = { canvas: false, h5p: false };
+let told = 0;
+
+function postRaw(message) {
+  if (embedded) window.parent.postMessage(message, "*");
+}
+
+function askForHeight() {
+  postRaw({ subject: "lti.capabilities" });
+  postRaw({ context: "h5p", action: "hello" });
+  tellHeight();
+}
+
+// As high as the controls and read-outs need beside the scene, or below it on a phone, within reason.
+function wantedHeight() {
+  const content = [...document.querySelectorAll(".mantine-ScrollArea-viewport, [data-dock-region]")]
+    .map((node) => node.getBoundingClientRect().top + node.scrollHeight);
+  const [least, most] = innerWidth <= 576 ? [640, 900] : [480, 900];
+  return Math.round(Math.min(Math.max(least, ...content), most));
+}
+
+function tellHeight() {
+  const height = wantedHeight();
+  told = height;
+  post({ type: "sim3:height", height });
+  if (heightTo.canvas) postRaw({ subject: "lti.frameResize", height });
+  if (heightTo.h5p) postRaw({ context: "h5p", action: "prepareResize", scrollHeight: height, clientHeight: innerHeight });
+}
+
+// --- Viewpoint: worked out anew when the page's size has left it, but never against one that somebody chose ---------
+
+let chosen = kept.has("view");
+let looked = sim.fit();
+let sizing = 0;
+
+for (const kind of ["pointerdown", "wheel", "keydown"]) {
+  document.addEventListener(kind, (event) => { if (event.target.matches?.("canvas")) chosen = true; }, { capture: true, passive: true });
+}
+
+addEventListener("resize", () => {
+  clearTimeout(sizing);
+  sizing = setTimeout(() => {
+    if (!innerWidth || !innerHeight) return; // hidden again
+    if (sim.live && Math.abs(wantedHeight() - told) > 8) tellHeight();
+    const view = sim.fit();
+    if (chosen || Math.hypot(...view.map((v, i) => v - looked[i])) < 0.02 * sim.radius) return;
+    looked = view;
+    send({ type: "view", view });
+  }, 150);
+});
+
+lost("");
 showAddress();
 connect();

@@ -275,7 +275,8 @@ class Stage:
         """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
         camera = self.client.camera
         seen = SHEET if self._phone else 1.0  # of the height; boot.js does the same for the first view
-        aspect = min(camera.image_width, self._width) / (seen * camera.image_height)
+        height = camera.image_height or 1  # a frame that is hidden again has none
+        aspect = (min(camera.image_width, self._width) or 1) / (seen * height)
         half = math.tan(0.5 * FIELD) * min(1.0, aspect) * seen
         away = np.subtract(position, look_at)
         away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))

@@ -10,8 +10,10 @@ from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple, Protocol
 
+import numpy as np
 import viser
 
+from geometry import GeometryError
 from sims.kit import pane, readout
 from sims.kit.entries import Entries
 from sims.kit.palette import DARK, LIGHT
@@ -25,6 +27,10 @@ NARROW, PHONE = 900, 576
 """Pixels of a page's width below, and up to, which there is less room."""
 PICTURES = 330
 """Pixels that the panel of the pictures is wide."""
+LOW = 500
+"""Pixels of a page's height below which a bottom sheet has room for one thing."""
+FARTHEST = 1e4
+"""Metres that a viewpoint may be away."""
 OTHER = "another"
 """What a list of presets shows for a value that isn't one of them."""
 
@@ -49,7 +55,8 @@ class Look:
     controls: bool = True
     watching: bool = False
     width: int = 1280
-    """Of the page, in pixels."""
+    height: int = 800
+    """Both of the page, in pixels."""
 
     @property
     def narrow(self) -> bool:
@@ -58,6 +65,10 @@ class Look:
     @property
     def phone(self) -> bool:
         return self.width <= PHONE
+
+    @property
+    def low(self) -> bool:
+        return self.height < LOW
 
 
 @dataclass
@@ -151,8 +162,9 @@ class Viewer:
         client.gui.set_panel_label(sim.title)
         if look.controls:
             self._dock()
-        # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls
-        held = any(not name.startswith("/") for name in sim.handles)
+        # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls, and
+        # all of them where the first control would else be out of sight
+        held = any(not name.startswith("/") for name in sim.handles) and not look.low
         self._panes = self._add_panes() if held or not look.phone else None
         self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
@@ -204,6 +216,16 @@ class Viewer:
             if self._panes is not None and self.sim.panes is not None:
                 panes = self.sim.panes(params, solution, self.palette)
                 set_property(self._panes, "content", pane.render(panes, self._style))
+        self.client.flush()
+
+    def look_from(self, view: Sequence[float]) -> None:
+        """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError."""
+        viewpoint, target = np.array(view[:3]), np.array(view[3:])
+        if not (np.abs(view) < FARTHEST).all() or np.linalg.norm(viewpoint - target) < 1e-6:
+            allowed = f"six numbers within {FARTHEST:g} m: viewpoint x, y, z, and another place x, y, z to look at"
+            raise GeometryError("view", [*view], allowed)
+        self.client.camera.position = viewpoint
+        self.client.camera.look_at = target
         self.client.flush()
 
     def point(self, name: str) -> None:
