@@ -11,6 +11,7 @@ import threading
 
 import uvicorn
 
+from app.protocol import LARGEST, Websocket
 from app.settings import Settings, load
 from app.web import create_app
 from sims.kit.viser_internals import ViserHost
@@ -54,8 +55,8 @@ def main() -> None:
 def config(settings: Settings, host: ViserHost) -> uvicorn.Config:
     """How uvicorn serves the application."""
     return uvicorn.Config(
-        create_app(settings, host), host=settings.host, port=settings.port, ws="websockets-sansio",
-        ws_max_size=1 << 20, ws_per_message_deflate=False, log_level="warning", access_log=False,
+        create_app(settings, host), host=settings.host, port=settings.port, ws=Websocket,
+        ws_max_size=LARGEST, ws_per_message_deflate=False, log_level="warning", access_log=False,
         timeout_graceful_shutdown=2, proxy_headers=True, lifespan="on",
     )  # fmt: skip
 

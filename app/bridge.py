@@ -8,31 +8,33 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import logging
 import re
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from time import monotonic
 from typing import Annotated, Any
 from urllib.parse import parse_qsl, urlsplit
 
 import msgspec
 import viser
-from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from app.commands import Answer, Commands
+from app.inbox import Ended, Inbox, Read, Strangers
 from app.messages import GuiUpdateMessage, decoder
-from app.session import Full, Session, Sessions, refusal
+from app.outgoing import Outgoing
+from app.session import Full, Session, Sessions
+from app.trouble import error_message, refused
 from sims.kit.params import BadParams, Params
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
 
 log = logging.getLogger("sim3")
-LARGEST_MESSAGE = 16 * 1024
-MESSAGES_PER_SECOND = 200
 HELLO_WITHIN = 2.0
+SEEN_WITHIN = 30.0
+"""Seconds that viser's websocket may be open before it shows something."""
 Number = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
@@ -60,6 +62,8 @@ class Set(msgspec.Struct, tag="set", tag_field="type", forbid_unknown_fields=Tru
     """The page around the sim sets parameters."""
 
     params: Annotated[dict[str, Any], msgspec.Meta(max_length=100)]
+    seconds: float | None = None
+    """To glide there in; None is at once."""
 
 
 class Act(msgspec.Struct, tag="action", tag_field="type", forbid_unknown_fields=True):
@@ -85,34 +89,12 @@ class Cancel(msgspec.Struct, tag="cancel", tag_field="type", forbid_unknown_fiel
 
 
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
-    """Asks for the state."""
+    """Asks for the state, and for its solution too."""
+
+    solution: bool = False
 
 
 channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get)
-
-
-@dataclass
-class Bucket:
-    """Lets a number of messages a second pass, with as much again for a burst."""
-
-    rate: float = MESSAGES_PER_SECOND
-    tokens: float = 2 * MESSAGES_PER_SECOND
-    at: float = field(default_factory=monotonic)
-    refused: int = 0
-
-    def passes(self) -> bool:
-        now = monotonic()
-        self.tokens = min(self.tokens + (now - self.at) * self.rate, 2 * self.rate)
-        self.at = now
-        if self.tokens < 1.0:
-            self.refused += 1
-            return False
-        self.tokens -= 1.0
-        return True
-
-    @property
-    def flooding(self) -> bool:
-        return self.refused > 10 * self.rate
 
 
 @dataclass
@@ -125,6 +107,10 @@ class Visit:
     name: str = ""
     sockets: int = 0
     viewer: Viewer | None = None
+    tell: Answer = lambda message: None
+    """Says something on the channel, once there is one."""
+    asking: asyncio.Task[None] | None = None
+    """Waits for a solution that the page wants."""
     hello: asyncio.Future[Hello] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
 
 
@@ -133,11 +119,16 @@ class Link:
     """One viser connection of a visit."""
 
     visit: Visit
+    seen: Callable[[], None]
+    """To be called once it shows something."""
     viewer: Viewer | None = None
+    commands: Commands | None = None
 
     def take(self, message: GuiUpdateMessage) -> bool:
         """Give a value to its control, which viser needn't hear of; False if there is none that can take it."""
-        return self.viewer is not None and self.viewer.input(message.uuid, message.updates.value)
+        if self.viewer is None or self.commands is None:
+            return False
+        return bool(self.commands.attempt(self.viewer.input, message.uuid, message.updates.value))
 
 
 class Bridge:
@@ -147,6 +138,7 @@ class Bridge:
         self.host = host
         self.sessions = sessions
         self.refusals: Counter[str] = Counter()
+        self.strangers = Strangers(self.refusals)
         self._origins = origins.split()
         self._visits: dict[str, Visit] = {}
         host.server.on_client_connect(self._on_connect)
@@ -163,8 +155,8 @@ class Bridge:
             with contextlib.suppress(WebSocketDisconnect, RuntimeError):
                 await ws.send_bytes(data)
 
-        link = Link(visit)
-        wire = Wire(send, link)
+        wire = Wire(send, None)
+        link = wire.context = Link(visit, self.strangers.enter(wire.hang_up, SEEN_WITHIN))
         serving = asyncio.create_task(self.host.connect(wire))
         pumping = asyncio.create_task(self._pump(ws, wire, link))
         code = 1013
@@ -172,6 +164,7 @@ class Bridge:
             await asyncio.wait((serving, pumping), return_when=asyncio.FIRST_COMPLETED)
             code = pumping.result() if pumping.done() else code
         finally:
+            link.seen()
             wire.hang_up()
             pumping.cancel()
             await asyncio.gather(serving, pumping, return_exceptions=True)
@@ -184,41 +177,24 @@ class Bridge:
                     await ws.close(code)
 
     async def _pump(self, ws: WebSocket, wire: Wire, link: Link) -> int:
-        bucket = Bucket()
-        while not wire.closed.is_set():
-            event = await ws.receive()
-            if event["type"] == "websocket.disconnect":
-                return 1000
-            data = event.get("bytes")
-            if data is None or len(data) > LARGEST_MESSAGE:
-                self.refusals["size or kind"] += 1
-                return 1009
-            if not bucket.passes():
-                self.refusals["rate"] += 1
-                if bucket.flooding:
-                    return 1008
-                continue
-            try:
-                message = decoder.decode(data)
-            except (msgspec.DecodeError, UnicodeDecodeError):
-                self.refusals["message"] += 1
-                if self.bad(bucket):
-                    return 1008
-                continue
-            if link.visit.watching and message.commands:
-                self.refusals["watching"] += 1
-                continue
-            if not isinstance(message, GuiUpdateMessage):
-                wire.feed(data, message.value_of)
-            elif not link.take(message):
-                self.refusals["value"] += 1
+        inbox = Inbox(ws, "bytes", decoder, self.refusals, "message")
+        try:
+            while not wire.closed.is_set():
+                self._hand_on(await inbox.next(), wire, link)
+        except Ended as end:
+            return end.code
         return 1000
 
-    @staticmethod
-    def bad(bucket: Bucket) -> bool:
-        """Count a message that makes no sense; many of them end the connection."""
-        bucket.refused += 50
-        return bucket.flooding
+    def _hand_on(self, read: Read, wire: Wire, link: Link) -> None:
+        message = read.message
+        if read.trouble:
+            return
+        if link.visit.watching and message.commands:
+            self.refusals["watching"] += 1
+        elif not isinstance(message, GuiUpdateMessage):
+            wire.feed(read.data, message.value_of)
+        elif not link.take(message):
+            self.refusals["value"] += 1
 
     async def _on_connect(self, client: viser.ClientHandle) -> None:
         wire = self.host.wire_of(client)
@@ -236,8 +212,10 @@ class Bridge:
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
             look = Look(hello.dark, hello.controls, visit.watching, hello.width)
-            link.viewer = visit.viewer = Viewer(visit.sim, client, session, look, session.params)
+            link.commands = Commands(session, lambda message: visit.tell(message))
+            link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params)
             session.join(link.viewer)
+            link.seen()
         except Full:
             self.refusals["full"] += 1
             wire.hang_up()
@@ -252,117 +230,105 @@ class Bridge:
             return
         visit = self._visit(ws, sim, room, watching)
         await ws.accept()
-        outgoing: asyncio.Queue[dict[str, Any]] = asyncio.Queue(maxsize=32)
-
-        def listener(message: dict[str, Any]) -> None:
-            if outgoing.full():
-                outgoing.get_nowait()
-            outgoing.put_nowait(message)
-
-        async def sender() -> None:
-            while True:
-                await ws.send_text(json.dumps(await outgoing.get(), allow_nan=False))
-
-        sending = asyncio.create_task(sender())
+        outgoing = Outgoing(ws)
+        inbox = Inbox(ws, "text", channel_decoder, self.refusals, "channel")
+        sending = asyncio.create_task(outgoing.send())
+        tell = visit.tell = outgoing.put
         session: Session | None = None
         code = 1000
         try:
-            session = await self._greet(ws, visit)
-            session.listeners.add(listener)
-            listener({**session.state(), "room": room, "watching": watching})
-            code = await self._listen(ws, session, visit, listener)
+            session = await self._greet(inbox, visit)
+            session.listeners.add(tell)
+            tell({**session.state(), "room": room, "watching": watching})
+            while True:
+                self._hear(await inbox.next(), session, visit, tell)
         except Full:
             self.refusals["full"] += 1
             code = 1013
-        except WebSocketDisconnect as end:
+        except Ended as end:
             code = end.code
-        except RuntimeError:
-            pass
         finally:
             sending.cancel()
             await asyncio.gather(sending, return_exceptions=True)
             if session is not None:
-                session.leave(listener=listener)
+                session.leave(listener=tell)
+            if visit.asking is not None:
+                visit.asking.cancel()
             self._part(visit)
             with contextlib.suppress(WebSocketDisconnect, RuntimeError):
                 await ws.close(code)
 
-    async def _greet(self, ws: WebSocket, visit: Visit) -> Session:
+    async def _greet(self, inbox: Inbox, visit: Visit) -> Session:
         """Take the page's first message; a room that isn't running goes on from the state that the page holds."""
+        reading = asyncio.ensure_future(inbox.next())
+        known = self.strangers.enter(reading.cancel, HELLO_WITHIN * 5)
         try:
-            hello = channel_decoder.decode(await asyncio.wait_for(ws.receive_text(), HELLO_WITHIN * 5))
-        except (msgspec.DecodeError, KeyError, TimeoutError):
-            hello = None
-        if not isinstance(hello, Hello):
-            self.refusals["channel"] += 1
-            raise WebSocketDisconnect(1008)
-        held, opened = ("", "") if visit.watching else (hello.query, hello.opened)
-        session = self.sessions.open(
-            visit.sim, visit.room, _state(visit.sim, held), opened=_state(visit.sim, opened), watching=visit.watching
-        )
+            await asyncio.wait((reading,))
+        finally:
+            known()
+            reading.cancel()
+        if reading.cancelled() or reading.exception() or not isinstance(hello := reading.result().message, Hello):
+            self.refusals["no greeting"] += 1
+            raise Ended(1008)
+        session = self._open(visit, *(("", "") if visit.watching else (hello.query, hello.opened)))
         session.reduced_motion = session.reduced_motion or hello.reduced
         if not visit.hello.done():
             visit.hello.set_result(hello)
         return session
 
-    async def _listen(self, ws: WebSocket, session: Session, visit: Visit, answer: Any) -> int:
-        bucket = Bucket()
-        while True:
-            event = await ws.receive()
-            if event["type"] == "websocket.disconnect":
-                return 1000
-            text = event.get("text")
-            if text is None or len(text) > LARGEST_MESSAGE:
-                self.refusals["size or kind"] += 1
-                return 1009
-            if not bucket.passes():
-                self.refusals["rate"] += 1
-                if bucket.flooding:
-                    return 1008
-                continue
-            try:
-                message = channel_decoder.decode(text)
-            except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-                self.refusals["channel"] += 1
-                if self.bad(bucket):
-                    return 1008
-                answer({"type": "error", "message": f"not understood: {error}"})
-                continue
-            self._obey(session, visit, message, answer)
+    def _open(self, visit: Visit, held: str, opened: str) -> Session:
+        """The session of a state that a page holds; of the sim's first one, if that state can't be solved."""
+        sim, room, watching = visit.sim, visit.room, visit.watching
+        try:
+            return self.sessions.open(sim, room, _state(sim, held), opened=_state(sim, opened), watching=watching)
+        except Full:
+            raise
+        except Exception as error:
+            visit.tell(error_message(sim, error))
+            return self.sessions.open(sim, room, sim.params(), watching=watching)
 
-    def _obey(self, session: Session, visit: Visit, message: Any, answer: Any) -> None:
+    def _hear(self, read: Read, session: Session, visit: Visit, answer: Answer) -> None:
+        if read.trouble:
+            answer(refused(f"not understood: {read.trouble}"))
+        else:
+            self._obey(session, visit, read.message, answer)
+
+    def _obey(self, session: Session, visit: Visit, message: Any, answer: Answer) -> None:
         if isinstance(message, Get):
-            answer(session.state())
+            if message.solution:
+                self._ask(session, visit, answer)
+            else:
+                answer(session.state())
             return
+        commands = Commands(session, answer)
         if visit.watching and isinstance(message, Point):  # for their own eyes
             if visit.viewer is not None:
-                visit.viewer.point(message.name)
+                commands.attempt(visit.viewer.point, message.name)
             return
         if visit.watching:
             self.refusals["watching"] += 1
             return
-        try:
-            if isinstance(message, Handle):
-                session.drag(message.name, (message.x, message.y))
-            elif isinstance(message, Act):
-                session.act(message.name)
-            elif isinstance(message, Point):
-                session.point(message.name, answer)
-            elif isinstance(message, Select):
-                session.select(message.name)
-            elif isinstance(message, Cancel):
-                session.cancel()
-            elif isinstance(message, Set):
-                session.change(message.params, live=False)
-        except ValidationError as error:
-            answer({"type": "error", "message": refusal(error)})
-        except KeyError as error:
-            answer(
-                {
-                    "type": "error",
-                    "message": f"no such action, handle or parameter: {str(error.args[0])[:80]}",
-                }
-            )
+        if isinstance(message, Handle):
+            commands.hold(message.name, (message.x, message.y))
+        elif isinstance(message, Act):
+            commands.act(message.name)
+        elif isinstance(message, Point):
+            commands.attempt(session.point, message.name, answer)
+        elif isinstance(message, Select):
+            commands.select(message.name)
+        elif isinstance(message, Cancel):
+            commands.attempt(session.cancel)
+        elif isinstance(message, Set):
+            commands.set(message.params, message.seconds)
+
+    def _ask(self, session: Session, visit: Visit, answer: Answer) -> None:
+        """Answer with the solution as soon as there is one; who asks again meanwhile gets the same answer."""
+
+        async def told() -> None:
+            answer(await session.solved_state())
+
+        if visit.asking is None or visit.asking.done():
+            visit.asking = asyncio.create_task(told())
 
     def _visit(self, ws: WebSocket, sim: Sim[Any, Any], room: str, watching: bool) -> Visit:
         """The visit that this socket belongs to; the first of its two sockets begins it."""

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from typing import Any
 
-from sims.kit.params import Params
+from sims.kit.params import Params, extra, numeric_fields
 from sims.kit.sim import Step
 
 FRAME = 1 / 30
@@ -25,7 +25,23 @@ def between(a: Any, b: Any, fraction: float) -> Any:
         return tuple(between(p, q, fraction) for p, q in zip(a, b, strict=True))
     if isinstance(a, bool) or isinstance(b, bool) or not isinstance(a, (int, float)) or not isinstance(b, (int, float)):
         return b
-    return a + (b - a) * fraction
+    on_the_way = a + (b - a) * fraction
+    return round(on_the_way) if isinstance(a, int) and isinstance(b, int) else on_the_way
+
+
+def gliding(start: Params, target: Params) -> dict[str, Any]:
+    """The target's numbers that can glide there: vectors, lists of one length, and what has a slider.
+
+    Whole numbers without one, such as that of a selected point, are names and no amounts.
+    """
+    found = {name: (getattr(start, name), getattr(target, name)) for name in numeric_fields(type(target))}
+    return {name: b for name, (a, b) in found.items() if _glides(a, b, extra(type(target).model_fields[name]))}
+
+
+def _glides(a: Any, b: Any, hints: Mapping[str, Any]) -> bool:
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b)
+    return (isinstance(a, float) and isinstance(b, float)) or hints["control"] == "slider"
 
 
 async def play(steps: Iterator[Step], now: Callable[[], Params], *, reduced: bool) -> AsyncIterator[Mapping[str, Any]]:

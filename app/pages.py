@@ -8,12 +8,12 @@ import hashlib
 import math
 from typing import Any
 
-from fastapi import Request
+from fastapi import HTTPException, Request
 from fastapi.responses import Response
 from starlette.templating import Jinja2Templates
 
 from app.settings import ROOT
-from sims import SIMS
+from sims import SIMS, by_slug
 from sims.kit import viser_client
 from sims.kit.palette import DARK
 from sims.kit.params import Complaint, Params
@@ -115,3 +115,11 @@ def details(sim: AnySim) -> dict[str, Any]:
         "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
         "parameters": sim.params.model_json_schema(),
     }
+
+
+def sim_or_404(slug: str) -> AnySim:
+    """The sim of an address."""
+    sim = by_slug(slug)
+    if sim is None:
+        raise HTTPException(404, f"There is no sim named {slug[:60]!r}.")
+    return sim

@@ -22,12 +22,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from app.motion import play
+from app.motion import gliding, play
+from app.trouble import Unknown, error_message
 from app.workers import workers
-from geometry import GeometryError
-from sims.kit.params import Params, clipped
+from sims.kit import child
+from sims.kit.params import Params
 from sims.kit.progress import Superseded, Work, at_work
-from sims.kit.sim import Sim, Step
+from sims.kit.sim import Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
 log = logging.getLogger("sim3")
@@ -40,6 +41,8 @@ PATIENCE = 0.2
 """Seconds that a solve in the pool goes on for while a newer state waits."""
 LONG, REPORTED_EVERY = 0.4, 0.2
 """Seconds without a drawing from which on pages are told how far the work is, and between two such messages."""
+SOLVED_WITHIN = 20.0
+"""Seconds that a page which wants the solution waits for that of the newest state."""
 UNVISITED = 60.0
 """Seconds that a session without viewers is kept."""
 
@@ -96,11 +99,26 @@ class Session:
         self.redraw()  # also where nothing changes: a control that was moved too far goes back
         self._set(self.params.moved(changes) if live else self.params.changed(changes))
 
+    def glide(self, changes: Mapping[str, Any], seconds: float) -> None:
+        """Take changes as from a link, and go there within some seconds; at once where motion is reduced.
+
+        Numbers glide; words, switches, and lists of another length are set at the start. Raises ValidationError.
+        """
+        target = self.params.changed(changes)
+        self.stop_motion()
+        self.redraw()
+        if self.reduced_motion:
+            self._set(target)
+            return
+        ends = gliding(self.params, target)
+        self._set(target.moved({name: getattr(self.params, name) for name in ends}))
+        self._begin(iter([Step(ends, seconds), Step(dict(target.__dict__), 0.0)]))
+
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels)."""
         handle = self.sim.handles.get(name)
         if handle is None:
-            raise KeyError(name)
+            raise Unknown("handle", name, self.sim.handles)
         if not self.sim.heavy:
             self.change(handle(self.params, place))
             return
@@ -116,8 +134,8 @@ class Session:
                 work = asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
                 try:
                     self.change(await work)
-                except (ValidationError, GeometryError) as error:
-                    self._tell({"type": "error", "message": str(error)})
+                except Exception as error:
+                    self._tell(error_message(self.sim, error))
         finally:
             self._seeking = None
 
@@ -134,7 +152,7 @@ class Session:
         """
         self._pointing = by if name else None
         for viewer in list(self.viewers):
-            viewer.point(name)
+            self._light(viewer, name)
         for listener in list(self.listeners):
             if listener is not by:
                 listener({"type": "point", "name": name})
@@ -154,12 +172,15 @@ class Session:
             return
         action = next((a for a in self.sim.actions if a.name == name), None)
         if action is None:
-            raise KeyError(name)
+            raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
         result = action.run(self.params)
         if isinstance(result, Mapping):
             self._set(self.params.changed(result))
         else:
-            self._motion = asyncio.get_running_loop().create_task(self._play(result))
+            self._begin(result)
+
+    def _begin(self, motion: Iterator[Step]) -> None:
+        self._motion = asyncio.get_running_loop().create_task(self._play(motion))
 
     def stop_motion(self) -> None:
         """End a running animation where it is."""
@@ -168,10 +189,13 @@ class Session:
             self._motion = None
 
     async def _play(self, steps: Iterator[Step]) -> None:
-        async for changes in play(steps, lambda: self.params, reduced=self.reduced_motion):
-            self._set(self.params.moved(changes))
-            if self.sim.heavy and self._drawing is not None:  # what takes long is seen before the motion goes on
-                await asyncio.wait([self._drawing])
+        try:
+            async for changes in play(steps, lambda: self.params, reduced=self.reduced_motion):
+                self._set(self.params.moved(changes))
+                if self.sim.heavy and self._drawing is not None:  # what takes long is seen before the motion goes on
+                    await asyncio.wait([self._drawing])
+        except Exception as error:
+            self._tell(error_message(self.sim, error))
         self._motion = None
 
     def cancel(self) -> None:
@@ -213,8 +237,8 @@ class Session:
                     self._solved = params
                 except Superseded:
                     continue
-                except GeometryError as error:
-                    self._tell({"type": "error", "message": str(error)})
+                except Exception as error:
+                    self._tell(error_message(self.sim, error))
                     if self.params is params:
                         self.params = self._solved
                 for viewer in list(self.viewers) if self.solution is not None else ():
@@ -234,6 +258,12 @@ class Session:
             viewer.draw(self._solved, self.solution)
         except Exception:
             log.exception("drawing %s for a viewer failed", self.sim.slug)
+
+    def _light(self, viewer: Viewer, name: str) -> None:
+        try:
+            viewer.point(name)
+        except Exception:
+            log.exception("pointing in %s failed for a viewer", self.sim.slug)
 
     async def _solve(self, params: Params) -> Any:
         if not self.sim.heavy:
@@ -276,10 +306,20 @@ class Session:
 
     def state(self) -> dict[str, Any]:
         """The state message for pages."""
+        return self._state(self.params)
+
+    async def solved_state(self) -> dict[str, Any]:
+        """The same with the solution, once the newest state is solved; both are of the state that is solved."""
+        if self._drawing is not None:
+            await asyncio.wait([self._drawing], timeout=SOLVED_WITHIN)
+        solution = None if self.solution is None else jsonable(self.solution)
+        return {**self._state(self._solved), "solution": solution}
+
+    def _state(self, params: Params) -> dict[str, Any]:
         words = "" if self.solution is None else self.sim.describe(self._solved, self.solution)
         return {
-            "type": "state", "version": self.version, "params": self.params.model_dump(mode="json"),
-            "query": self.params.query(), "text": words,
+            "type": "state", "version": self.version, "params": params.model_dump(mode="json"),
+            "query": params.query(), "text": words,
         }  # fmt: skip
 
     def _tell(self, message: dict[str, Any]) -> None:
@@ -392,7 +432,8 @@ class Sessions:
                 del self._by_room[key]
 
     def close(self) -> None:
-        """End the pools."""
+        """End the pools, and the processes that read files."""
+        child.stop()
         self.aside.shutdown(wait=False, cancel_futures=True)
         self._ahead.shutdown(wait=False, cancel_futures=True)
         self._pool.shutdown(wait=False, cancel_futures=True)
@@ -411,9 +452,3 @@ def room_of(key: str) -> str:
 def is_room(name: str) -> bool:
     """Whether some key could control a room of that name."""
     return re.fullmatch("[0-9a-f]{20}", name) is not None
-
-
-def refusal(error: ValidationError) -> str:
-    """A validation error in one line for people."""
-    item = error.errors()[0]
-    return f"{clipped('.'.join(str(p) for p in item['loc']))}: {item['msg']}".removeprefix(": ")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -12,24 +11,23 @@ from urllib.parse import urlencode
 
 import fastapi_offline  # carries Swagger UI, so that /docs needs no other host
 from fastapi import FastAPI, HTTPException, Request, WebSocket
-from fastapi.encoders import jsonable_encoder
-from fastapi.exceptions import RequestValidationError
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import GZipMiddleware
 
 from app import pages
+from app.api import OpenApi, add_api, in_api
 from app.bridge import Bridge
 from app.files import ADDRESS, add_files
+from app.pages import sim_or_404
 from app.security import Headers, SmallBodies
 from app.session import Full, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
-from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import viser_client
 from sims.kit.params import BadParams, Params
-from sims.kit.sim import Sim, jsonable
+from sims.kit.sim import Sim
 from sims.kit.viser_internals import ViserHost
 
 log = logging.getLogger("sim3")
@@ -49,6 +47,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
         sessions.close()
+        answers.close()
 
     app = FastAPI(
         title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan,
@@ -59,11 +58,12 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
     app.add_middleware(SmallBodies, files=ADDRESS)
+    app.add_middleware(OpenApi)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions, largest)
-    _add_api(app, sessions)
+    app.state.answers = answers = add_api(app)
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 
@@ -98,14 +98,6 @@ class Static(StaticFiles):
         response = super().file_response(*args, **kwargs)
         response.headers.update(FOR_EVER)
         return response
-
-
-def sim_or_404(slug: str) -> AnySim:
-    """The sim of an address."""
-    sim = by_slug(slug)
-    if sim is None:
-        raise HTTPException(404, f"There is no sim named {slug[:60]!r}.")
-    return sim
 
 
 def _params(sim: AnySim, request: Request) -> Params:
@@ -184,43 +176,6 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         )
 
 
-def _add_api(app: FastAPI, sessions: Sessions) -> None:
-    @app.get("/api/sims", tags=["catalogue"])
-    async def catalogue() -> list[dict[str, Any]]:
-        """Every sim with its title, summary and concepts."""
-        return [pages.card(sim) for sim in SIMS]
-
-    @app.get("/api/sims/{slug}", tags=["catalogue"])
-    async def one(slug: str) -> dict[str, Any]:
-        """One sim, with its objectives and the JSON schema of its parameters."""
-        return pages.details(sim_or_404(slug))
-
-    for sim in SIMS:
-        _add_solve(app, sessions, sim)
-
-    @app.post("/api/sims/{slug}/solve", include_in_schema=False)
-    async def unknown(slug: str) -> None:
-        sim_or_404(slug)
-
-
-def _add_solve(app: FastAPI, sessions: Sessions, sim: AnySim) -> None:
-    def answer(params: Params) -> Response:
-        try:
-            solution = sim.solve(params)
-        except GeometryError as error:
-            raise HTTPException(422, str(error)) from error
-        return JSONResponse(jsonable({"params": params.model_dump(mode="json"), "solution": solution}))
-
-    async def solve(params: Any = None) -> Response:
-        work = asyncio.get_running_loop().run_in_executor(sessions.aside, answer, params or sim.params())
-        return await work
-
-    solve.__annotations__ = {"params": sim.params | None, "return": Response}
-    solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
-    solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
-    app.post(f"/api/sims/{sim.slug}/solve", tags=["solve"], response_class=JSONResponse)(solve)
-
-
 def _add_sockets(app: FastAPI, bridge: Bridge) -> None:
     async def enter(ws: WebSocket, slug: str, room: str, key: str | None, kind: str) -> None:
         sim = by_slug(slug)
@@ -262,14 +217,9 @@ def _add_errors(app: FastAPI) -> None:
             good=urlencode(error.good, safe=",-.:"),
         )
 
-    @app.exception_handler(RequestValidationError)
-    async def bad_body(_: Request, error: RequestValidationError) -> Response:
-        details = [{k: v for k, v in e.items() if k != "ctx"} for e in error.errors()]
-        return JSONResponse(jsonable({"detail": jsonable_encoder(details)}), 422)
-
     @app.exception_handler(404)
     @app.exception_handler(503)
     async def missing(request: Request, error: HTTPException) -> Response:
-        if request.url.path.removeprefix(request.scope.get("root_path", "")).startswith("/api/"):
+        if in_api(request.scope):
             return JSONResponse({"detail": error.detail}, error.status_code)
         return pages.render(request, "missing.html", status=error.status_code, detail=error.detail)

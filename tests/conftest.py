@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import settings
 
+from sims.kit import child
 from tests.server import shared_host
 
 # How long an example takes says nothing on a busy machine. In CI the examples are always the same; elsewhere they vary.
@@ -31,3 +32,10 @@ def _one_viser_host() -> Iterator[None]:
         host.call(lambda: None)
         host.viser.stop()
         assert not host.problems
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_child_is_left() -> Iterator[None]:
+    """Ends the processes that read files."""
+    yield
+    child.stop()

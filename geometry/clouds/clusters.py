@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ..arrays import Array
 from ..errors import GeometryError, as_number
+from .neighbours import Neighbours
 from .points import Indices, Progress, as_cloud, measured, silent
 
 _PAIRS = 1 << 20  # of points, compared at once
@@ -133,7 +133,7 @@ class _Grid:
 
     def _meet(self, one: int, other: int) -> bool:
         p, q = (self.points[self.starts[c] : self.starts[c] + self.counts[c]] for c in (one, other))
-        nearest = cKDTree(p).query(q, distance_upper_bound=np.nextafter(self.limit, math.inf))[0]
+        nearest, _ = Neighbours(p).query(q, 1, distance_upper_bound=np.nextafter(self.limit, math.inf))
         return bool(nearest.min() <= self.limit)
 
     def _join(self, a: Indices, b: Indices) -> None:

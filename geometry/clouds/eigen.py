@@ -6,8 +6,9 @@ import numpy as np
 
 from ..arrays import Array, Components, Mask, cross, dot, stack
 
-_CLOSE = 1e-5
-"""Gap to the next eigenvalue, as part of the largest, below which LAPACK's iteration takes over."""
+_CLOSE = 3e-4
+"""Gap to the next eigenvalue, as part of the largest, below which LAPACK's iteration takes over: the formula loses
+digits as one over the gap."""
 _NOTHING = 1e-300
 
 

@@ -67,7 +67,7 @@ def _together(near: Neighbours, members: Array, count: int, candidates: int) -> 
     All is relative to the group's centre and the candidates' radius: no digits are lost far from the origin.
     """
     center = members.mean(axis=2, keepdims=True)
-    distance, places = near.tree.query(center[..., 0].T, candidates)
+    distance, places = near.query(center[..., 0].T, candidates)
     radius = distance[:, -1:]
     p, q = (members - center) / radius, np.empty((9, *places.shape))
     q[:3] = (near.xyz.take(places, axis=1) - center) / radius

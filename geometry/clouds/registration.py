@@ -101,8 +101,7 @@ class _Pairs:
 
     def _ask(self, xyz: Array, rows: Indices) -> None:
         farthest, points = 1.25 * self.reach, xyz.take(rows, axis=1)
-        tree = self.goal.near.tree
-        distance, place = tree.query(points.T, 2, distance_upper_bound=farthest, workers=THREADS)
+        distance, place = self.goal.near.query(points.T, 2, distance_upper_bound=farthest, workers=THREADS)
         first, second = np.minimum(distance, farthest).T
         found = place[:, 0] < len(self.goal.near)
         self.near[rows] = np.where(found, place[:, 0], -1)

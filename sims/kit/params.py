@@ -433,6 +433,11 @@ def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[s
             name = str(item["loc"][0])
             yield name, allowed_values(model.model_fields[name])
         else:
-            text = str(item["msg"]).removeprefix("Value error, ")
-            names = str(item.get("ctx", {}).get("names", text.split(" ", 1)[0]))
-            yield from ((name, text) for name in names.split(","))
+            names, text = disagreeing(item)
+            yield from ((name, text) for name in names)
+
+
+def disagreeing(item: Mapping[str, Any]) -> tuple[list[str], str]:
+    """The fields that a model's validator complains of, and its words."""
+    text = str(item["msg"]).removeprefix("Value error, ")
+    return str(item.get("ctx", {}).get("names", text.split(" ", 1)[0])).split(","), text

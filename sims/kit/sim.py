@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
@@ -144,14 +145,25 @@ def jsonable(value: Any) -> Any:
     """A Solution as JSON: arrays as nested lists by rows; what doesn't exist (NaN, infinite) as null."""
     if is_dataclass(value) and not isinstance(value, type):
         return {f.name: jsonable(getattr(value, f.name)) for f in fields(value) if not f.metadata.get("drawn")}
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None
     if isinstance(value, np.ndarray):
-        return jsonable(value.tolist())
+        return _listed(value)
     if isinstance(value, Mapping):
         return {str(k): jsonable(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
         return [jsonable(v) for v in value]
     if isinstance(value, np.generic):
         return jsonable(value.item())
-    if isinstance(value, float):
-        return value + 0.0 if np.isfinite(value) else None
     return value
+
+
+def _listed(array: np.ndarray[Any, Any]) -> Any:
+    """Whole arrays at once: number by number takes ten times as long."""
+    if array.dtype.kind != "f":
+        return array.tolist()
+    finite, numbers = np.isfinite(array), array + 0.0
+    if not finite.all():
+        numbers = numbers.astype(object)
+        numbers[~finite] = None
+    return numbers.tolist()

@@ -167,7 +167,8 @@ class Viewer:
         self.scene = sim.scene(
             Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
         )
-        self._light: Callable[[str], None] | None = getattr(self.scene, "point", None)
+        light = getattr(self.scene, "point", None)
+        self._light: Callable[[str], None] | None = light if callable(light) else None  # it may be a node of that name
         self._lit = ""
         self._live = False
 

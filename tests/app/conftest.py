@@ -13,6 +13,7 @@ import httpx
 import pytest
 import uvicorn
 
+from app import session
 from app.__main__ import config
 from app.settings import Settings
 from sims.kit.viser_internals import ViserHost
@@ -86,8 +87,12 @@ class _Recorder(logging.Handler):
 
 @pytest.fixture(scope="module")
 def local() -> Iterator[Local]:
-    """One server for the tests of a module; at its end nothing may have gone wrong unseen."""
-    with Local() as local:
+    """One server for the tests of a module; at its end nothing may have gone wrong unseen.
+
+    It tells each state at once: most of a test's time would else be the wait between two.
+    """
+    with pytest.MonkeyPatch.context() as patch, Local() as local:
+        patch.setattr(session, "STATE_INTERVAL", 0.0)
         yield local
 
 

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from html import escape, unescape
 from typing import Any
 
 import httpx
 import pytest
 
+from app import api
 from sims import SIMS
-from sims.kit.params import BadParams
+from sims.kit.params import BadParams, Params, clipped, extra, numeric_fields
+from sims.kit.schema import solution_schema
 from sims.kit.sim import Sim, jsonable
 from tests.app.bad_values import HOSTILE, JSON, JSON_NAMES, LINK, LINK_NAMES
+from tests.app.conftest import Local
+from tests.schema import wrong
+from tests.server import wait_for
 from tests.sims.cases import FEW, FEW_NAMES
 from tests.sims.contract import GOLDEN
 
 AnySim = Sim[Any, Any]
+TRIANGULATION = next(sim for sim in SIMS if sim.slug == "triangulation")
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 
 
@@ -186,6 +193,192 @@ def test_a_body_of_any_sensible_size_is_read(http: httpx.Client) -> None:
 def test_null_means_all_defaults(http: httpx.Client, sim: AnySim) -> None:
     answer = http.post(f"/api/sims/{sim.slug}/solve", content=b"null", headers={"content-type": "application/json"})
     assert strict(answer)["params"] == sim.params().model_dump(mode="json")
+
+
+POST = {"content-type": "application/json"}
+
+
+def post(http: httpx.Client, sim: AnySim, body: str | bytes, **headers: str) -> httpx.Response:
+    return http.post(f"/api/sims/{sim.slug}/solve", content=body, headers={**POST, **headers})
+
+
+def numbers() -> Iterator[tuple[AnySim, str, Any]]:
+    """Each number of each sim, and a value that it may have."""
+    for sim in SIMS:
+        model: type[Params] = sim.params
+        for name in numeric_fields(model):
+            field = sim.params.model_fields[name]
+            low, _ = sim.params().bounds(name)
+            yield sim, name, list(field.default) if isinstance(field.default, tuple) else low
+
+
+NUMBERS = [(sim, name, good) for sim, name, good in numbers() if good != []]
+
+
+@pytest.mark.parametrize(("sim", "name", "good"), NUMBERS, ids=[f"{sim.slug}: {name}" for sim, name, _ in NUMBERS])
+def test_a_number_is_neither_text_nor_true_or_false(http: httpx.Client, sim: AnySim, name: str, good: Any) -> None:
+    for bad in (json.dumps(good).replace("null", '"1"'), True, "1e0"):
+        value = [str(v) for v in good] if isinstance(good, list) and bad is not True else bad
+        for detail in complaints(http.post(f"/api/sims/{sim.slug}/solve", json={name: value})):
+            assert detail["parameter"] == name
+            assert detail["received"] == clipped(json.dumps(value))
+            assert "number" in detail["allowed"]
+
+
+@each_sim
+def test_switches_are_true_or_false(http: httpx.Client, sim: AnySim) -> None:
+    for name, field in sim.params.model_fields.items():
+        if extra(field)["control"] == "switch":
+            for value in (1, 0, "true", "1", None):
+                (detail,) = complaints(http.post(f"/api/sims/{sim.slug}/solve", json={name: value}))
+                assert (detail["parameter"], detail["allowed"]) == (name, "true or false")
+
+
+@pytest.mark.parametrize(("sim", "name", "value"), JSON, ids=JSON_NAMES)
+def test_what_is_wrong_stands_in_fields(http: httpx.Client, sim: AnySim, name: str, value: Any) -> None:
+    details = complaints(post(http, sim, json.dumps({name: value})))
+    assert name in {detail["parameter"] for detail in details}
+    for detail in details:
+        assert detail["allowed"]
+        assert len(detail["received"]) <= 80
+        if detail["parameter"] == name:
+            assert detail["received"] == clipped(json.dumps(value))
+
+
+def test_parameters_that_do_not_go_together_are_each_named(http: httpx.Client) -> None:
+    body = {"angles": [1, 2], "lengths": [1, 1, 1]}
+    details = complaints(http.post("/api/sims/transform-chain/solve", json=body))
+    assert [(d["parameter"], d["received"]) for d in details] == [("angles", "[1, 2]"), ("lengths", "[1, 1, 1]")]
+    assert "as many" in details[0]["allowed"]
+
+
+@pytest.mark.parametrize("number", ["7", "7.0", "7e0"])
+def test_a_whole_number_may_be_spelled_as_a_fraction(http: httpx.Client, number: str) -> None:
+    told = strict(post(http, TRIANGULATION, f'{{"seed": {number}, "focal": 700, "left_uv": [410, 210.0]}}'))
+    assert (told["params"]["seed"], told["params"]["focal"]) == (7, 700.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "named"),
+    [
+        ('{"focal": 1e400}', "focal"),
+        ('{"focal": NaN}', "focal"),
+        ('{"focal": -Infinity}', "focal"),
+        ('{"focal": ' + "9" * 400 + "}", "focal"),
+        ('{"seed": ' + "9" * 400 + "}", "seed"),
+        ('{"seed": 1.5}', "seed"),
+        ('{"focal": ' + "9" * 5000 + "}", ""),
+        ('{"focal": 700, "focal": 800}', "focal"),
+        ('{"focal": {"a": 1, "a": 2}}', "a"),
+        ('{"focal": ' + "[" * 900 + "]" * 900 + "}", "focal"),
+        ('{"focal": ' + "[" * 20_000 + "]" * 20_000 + "}", ""),
+        ('{"\\ud800": 1}', ""),
+        ('{"focal": "\\ud800"}', "focal"),
+        ('{"method": "\\ud800"}', "method"),
+        ('{"seed": 1', ""),
+        ("[1]", ""),
+        ("7", ""),
+        (b"\xff\xfe", ""),
+        (b"\xff\xfe\x00", ""),
+    ],
+    ids=lambda v: str(v)[:30],
+)
+def test_hostile_json_is_refused_in_words(http: httpx.Client, body: str | bytes, named: str) -> None:
+    (detail,) = complaints(post(http, TRIANGULATION, body))
+    assert {"input", "msg", "type"} <= detail.keys()
+    assert detail["parameter"] == named
+    assert detail["allowed"]
+
+
+@pytest.mark.parametrize("kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "", "\xff"])
+def test_a_body_that_says_it_is_no_json_is_refused(http: httpx.Client, kind: str) -> None:
+    answer = http.post("/api/sims/camera/solve", content=b"{}", headers={b"content-type": kind.encode("latin-1")})
+    assert answer.status_code == 415
+    assert "application/json" in strict(answer)["detail"]
+
+
+def test_json_of_a_kind_is_json(http: httpx.Client) -> None:
+    for kind in ("application/json; charset=utf-8", "Application/JSON", "application/ld+json"):
+        assert post(http, TRIANGULATION, "{}", **{"content-type": kind}).status_code == 200
+
+
+# ---- pages of other origins
+
+ELSEWHERE = {"origin": "https://course.example"}
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "status"),
+    [
+        ("GET", "/api/sims", None, 200),
+        ("GET", "/api/sims/camera", None, 200),
+        ("POST", "/api/sims/camera/solve", b"{}", 200),
+        ("POST", "/api/sims/camera/solve", b'{"fx": 1}', 422),
+        ("POST", "/api/sims/camera/solve", b"1" * 70_000, 413),
+        ("GET", "/api/sims/nothing", None, 404),
+        ("GET", "/api/nothing", None, 404),
+        ("DELETE", "/api/sims", None, 405),
+    ],
+)
+def test_pages_of_any_origin_may_read_the_api(
+    http: httpx.Client, method: str, path: str, body: bytes | None, status: int
+) -> None:
+    answer = http.request(method, path, content=body, headers={**ELSEWHERE, **POST})
+    assert answer.status_code == status
+    assert answer.headers["access-control-allow-origin"] == "*"
+    assert "access-control-allow-credentials" not in answer.headers
+
+
+def test_a_browser_that_asks_first_may_post_json(http: httpx.Client) -> None:
+    asked = {"access-control-request-method": "POST", "access-control-request-headers": "content-type"}
+    answer = http.options("/api/sims/camera/solve", headers={**ELSEWHERE, **asked})
+    assert answer.status_code == 200
+    assert "POST" in answer.headers["access-control-allow-methods"]
+    assert "content-type" in answer.headers["access-control-allow-headers"]
+    asked["access-control-request-method"] = "DELETE"
+    assert http.options("/api/sims/camera/solve", headers={**ELSEWHERE, **asked}).status_code == 400
+
+
+@pytest.mark.parametrize("path", ["/", "/sims/camera", "/healthz", "/docs", "/apis"])
+def test_only_the_api_is_open(http: httpx.Client, path: str) -> None:
+    assert "access-control-allow-origin" not in http.get(path, headers=ELSEWHERE).headers
+
+
+def test_what_fails_on_the_server_is_said_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Local() as local:
+        monkeypatch.setattr(api, "strict", lambda *_: 1 / 0)
+        answer = local.http.post("/api/sims/camera/solve", json={}, headers=ELSEWHERE)
+        assert (answer.status_code, answer.headers["access-control-allow-origin"]) == (500, "*")
+        assert "log" in strict(answer)["detail"]
+        wait_for(lambda: any("ZeroDivisionError" in problem for problem in local.problems), "a line in the log")
+        local.problems.clear()
+
+
+# ---- what a solution is
+
+
+@pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
+def test_a_solution_is_what_its_schema_says(sim: AnySim, name: str, params: Any) -> None:
+    schema = solution_schema(api.solved(sim))
+    assert not list(wrong(jsonable(sim.solve(params)), schema))
+
+
+@each_sim
+def test_the_schema_is_told_and_says_what_is_what(http: httpx.Client, sim: AnySim) -> None:
+    schema = strict(http.get(f"/api/sims/{sim.slug}"))["solution"]
+    path = strict(http.get("/openapi.json"))["paths"][f"/api/sims/{sim.slug}/solve"]["post"]
+    answer = path["responses"]["200"]["content"]["application/json"]["schema"]
+    assert answer["properties"]["solution"] == schema
+    assert set(path["requestBody"]["content"]["application/json"]["schema"]["properties"]) == set(
+        sim.params.model_fields
+    )
+    assert schema["description"]
+    told = strict(http.post(f"/api/sims/{sim.slug}/solve"))
+    assert not list(wrong(told["solution"], schema))
+    for name in schema["required"]:
+        rest = {key: value for key, value in told["solution"].items() if key != name}
+        assert list(wrong(rest, schema)), name
+        assert list(wrong({**rest, name: b"no JSON"}, schema)), name
 
 
 # ---- bad parameters in a link

@@ -281,30 +281,34 @@ BEFORE_HELLO: list[str | bytes] = [
     '{"type": "hello", "dark": false, "reduced": false, "width": NaN, "controls": true, "query": ""}',
     json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 9, "controls": True, "query": "x" * 4001}),
     "[" * 16_000,
+    '{"type": "set", "params": {"a": ' + "[" * 10_000,
+    '{"type": "hello", "query": "\\ud800"}',
+    '{"type": "get", "solution": true}',
     "x" * 2_000_000,
 ]
 
 
 @pytest.mark.parametrize("first", BEFORE_HELLO, ids=lambda first: f"{len(first)} {first[:40]!r}")
 def test_a_channel_that_does_not_greet_is_closed(local: Local, learner: Page, first: str | bytes) -> None:
-    before, rooms = local.refusals["channel"], local.sessions
+    before, rooms = local.refusals["no greeting"], local.sessions
     key = new_key()
     channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
-    channel.send(first)
+    with suppress(ConnectionClosed):  # the server may hang up in the middle of what is too long
+        channel.send(first)
     assert closed(channel) in (1008, 1009)
     if len(first) < 1 << 20:
-        local.refused("channel", before)
+        local.refused("no greeting", before)
     assert local.sessions == rooms
     learner.works()
 
 
 def test_a_channel_that_says_nothing_is_closed(local: Local, learner: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bridge, "HELLO_WITHIN", 0.05)
-    before = local.refusals["channel"]
+    before = local.refusals["no greeting"]
     key = new_key()
     channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
     assert closed(channel) == 1008
-    local.refused("channel", before)
+    local.refused("no greeting", before)
     learner.works()
 
 
@@ -557,9 +561,10 @@ def alive(kind: type) -> int:
 def test_pages_that_went_leave_nothing_behind(local: Local, learner: Page) -> None:
     learner.settle()
     before = {kind: alive(kind) for kind in (Viewer, Wire, bridge.Visit, bridge.Link)}
-    for _ in range(10):
+    for _ in range(20):
         Page(local.url).close()
-    wait_for(lambda: before == {kind: alive(kind) for kind in before}, "what the pages had to be freed")
+    # What an earlier test's page had may still have been there before, and be freed meanwhile.
+    wait_for(lambda: all(alive(kind) <= count for kind, count in before.items()), "what the pages had to be freed")
     assert not [v for v in local.app.state.bridge._visits.values() if v.sockets < 1]
 
 

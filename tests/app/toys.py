@@ -36,10 +36,13 @@ class Solver:
 
     seconds: float = 0.0
     solved: list[float] = field(default_factory=list)
+    broken: bool = False
 
     def __call__(self, params: ToyParams) -> ToySolution:
         self.solved.append(params.size)
         time.sleep(self.seconds)
+        if self.broken:
+            raise ZeroDivisionError
         if params.size == IMPOSSIBLE:
             raise GeometryError("size", params.size, "anything but 13")
         return ToySolution(2.0 * params.size)

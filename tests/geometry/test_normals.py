@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
@@ -97,6 +97,7 @@ def test_only_the_points_without_a_normal_are_nan() -> None:
 
 
 @given(rotations, st.floats(-12.0, 0.0), st.floats(-12.0, 0.0), st.floats(-6.0, 6.0))
+@example(np.eye(3), -5.0, -1.0, 0.0)
 def test_closed_form_eigenvectors_near_double_roots(R: Array, gap: float, thickness: float, scale: float) -> None:
     low = 10.0**thickness
     values = 10.0**scale * np.array([low, min(low + 10.0**gap, 1.0), 1.0])

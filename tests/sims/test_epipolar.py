@@ -57,7 +57,7 @@ def pixels(p: EpipolarParams, side: str, points: npt.ArrayLike) -> Array:
     """Pixels (n, 2) of points (n, 3) in the world by the definition of a camera."""
     R, C = pose(p, side)
     x, y, z = ((np.asarray(points, dtype=float) - C) @ R).T
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         return np.column_stack([320 + p.focal * x / z, 240 + p.focal * y / z])
 
 

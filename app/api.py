@@ -1,0 +1,227 @@
+"""The API: the catalogue, and solving. Pages of any origin may ask; what is wrong is said in words and as fields."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any, get_type_hints
+
+import msgspec
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.responses import Response
+from pydantic import ValidationError
+from starlette.middleware.cors import CORSMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app import pages
+from app.answers import RETRY, Answers, Busy, Gone
+from app.pages import sim_or_404
+from app.values import complaints, shown, strict
+from geometry import GeometryError
+from sims import SIMS
+from sims.kit.params import Params
+from sims.kit.schema import solution_schema
+from sims.kit.sim import Sim, jsonable
+
+AnySim = Sim[Any, Any]
+ANYWHERE = {"access-control-allow-origin": "*"}
+
+
+class Json(Response):
+    """JSON that any text can be put in: half a surrogate pair isn't UTF-8, so all is escaped that isn't ASCII."""
+
+    media_type = "application/json"
+
+    def render(self, content: Any) -> bytes:
+        return json.dumps(content, allow_nan=False).encode("ascii")
+
+
+class OpenApi:
+    """Lets pages of any origin read the API, its errors too, and nothing else."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._open = CORSMiddleware(
+            app, allow_origins=["*"], allow_methods=["GET", "POST"], allow_headers=["*"],
+            expose_headers=["retry-after"], max_age=86_400,
+        )  # fmt: skip
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await (self._open if in_api(scope) else self._app)(scope, receive, send)
+
+
+def in_api(scope: Scope) -> bool:
+    """Whether a request is for the API."""
+    path = str(scope.get("path", "")).removeprefix(scope.get("root_path", ""))
+    return scope["type"] == "http" and path.startswith("/api/")
+
+
+class BadBody(Exception):
+    """What is wrong with a body: items in FastAPI's form, each with `parameter`, `received` and `allowed` besides."""
+
+    def __init__(self, *items: Mapping[str, Any]) -> None:
+        super().__init__()
+        self.items = items
+
+
+def read(request: Request, body: bytes, model: type[Params]) -> Params:
+    """The parameters in a body; without one, the defaults. Raises `BadBody`."""
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if body and kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
+        words = f"The body must be JSON, with the header Content-Type: application/json; this one is {kind[:80]!r}."
+        raise HTTPException(415, words)
+    given = _given(body, model)
+    try:
+        return strict(model, given)
+    except ValidationError as error:
+        raise BadBody(
+            *(
+                _item(item["type"], item["loc"], item["msg"], item["input"], *complaint)
+                for item, complaint in complaints(model, given, error)
+            )
+        ) from None
+
+
+def _given(body: bytes, model: type[Params]) -> Mapping[str, Any]:
+    try:
+        given = json.loads(body, object_pairs_hook=_once) if body else {}
+    except RecursionError:
+        raise BadBody(_item("json_invalid", (), "The body is nested too deeply", None)) from None
+    except Twice as error:
+        name = str(error)
+        item = _item("twice", (name,), f"{name} is given twice", None, name, "two values", "one value")
+        raise BadBody(item) from None
+    except ValueError as error:
+        raise BadBody(_item("json_invalid", (), f"The body isn't JSON: {error}", None)) from None
+    if given is None:
+        return {}
+    if not isinstance(given, dict):
+        raise BadBody(_item("dict_type", (), "The body should be an object of parameters", given, "", shown(given)))
+    return given
+
+
+class Twice(Exception):
+    """A name that an object holds more than once."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise Twice(next(name for name in names if names.count(name) > 1))
+    return made
+
+
+def _item(
+    kind: str, where: tuple[int | str, ...], words: str, value: Any, parameter: str = "", received: str = "",
+    allowed: str = "a JSON object of parameters",
+) -> dict[str, Any]:  # fmt: skip
+    entries = value if isinstance(value, list | tuple) else (value,)
+    flat = not any(isinstance(entry, list | tuple | Mapping) for entry in entries)  # what is nested may be so deeply
+    return {
+        "type": kind, "loc": ["body", *where], "msg": words, "input": jsonable(value) if flat else shown(value),
+        "parameter": parameter, "received": received, "allowed": allowed,
+    }  # fmt: skip
+
+
+def add_api(app: FastAPI) -> Answers:
+    """The addresses of the API; what works out its long answers."""
+    answers = Answers()
+
+    @app.get("/api/sims", tags=["catalogue"])
+    async def catalogue() -> list[dict[str, Any]]:
+        """Every sim with its title, summary and concepts."""
+        return [pages.card(sim) for sim in SIMS]
+
+    @app.get("/api/sims/{slug}", tags=["catalogue"])
+    async def one(slug: str) -> dict[str, Any]:
+        """One sim, with its objectives and the JSON schemas of its parameters and its solution."""
+        sim = sim_or_404(slug)
+        return {**pages.details(sim), "solution": solution_schema(solved(sim))}
+
+    for sim in SIMS:
+        _add_solve(app, answers, sim)
+
+    @app.post("/api/sims/{slug}/solve", include_in_schema=False)
+    async def unknown(slug: str) -> None:
+        sim_or_404(slug)
+
+    @app.exception_handler(BadBody)
+    async def bad_body(_: Request, error: BadBody) -> Response:
+        return Json({"detail": error.items}, 422)
+
+    @app.exception_handler(Busy)
+    async def busy(_: Request, error: Busy) -> Response:
+        return Json({"detail": str(error)}, error.status, headers={"retry-after": str(RETRY)})
+
+    @app.exception_handler(Gone)
+    async def gone(_: Request, error: Gone) -> Response:
+        return Response(status_code=499)
+
+    @app.exception_handler(Exception)
+    async def failed(request: Request, error: Exception) -> Response:
+        headers = ANYWHERE if in_api(request.scope) else None  # no middleware sees this answer
+        return Json({"detail": "Something went wrong on the server; its log says what."}, 500, headers=headers)
+
+    return answers
+
+
+def solved(sim: AnySim) -> type:
+    """The dataclass of a sim's solutions."""
+    kind: type = get_type_hints(sim.solve)["return"]
+    return kind
+
+
+def _add_solve(app: FastAPI, answers: Answers, sim: AnySim) -> None:
+    def answer(params: Params) -> bytes:
+        solution = jsonable(sim.solve(params))
+        return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
+
+    async def solve(request: Request) -> Response:
+        params = read(request, await request.body(), sim.params)
+        try:
+            found = await _find(request, lambda: answer(params)) if sim.heavy else answer(params)
+        except GeometryError as error:
+            known = error.argument if error.argument in sim.params.model_fields else ""
+            item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
+            raise BadBody(item) from None
+        return Response(found, media_type="application/json")
+
+    async def _find(request: Request, find: Callable[[], bytes]) -> bytes:
+        address = "" if request.client is None else request.client.host
+        return await answers.find(address, find, _left(request))
+
+    solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
+    solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
+    app.post(
+        f"/api/sims/{sim.slug}/solve", tags=["solve"], response_class=Response,
+        openapi_extra={"requestBody": {"content": {"application/json": {"schema": sim.params.model_json_schema()}}}},
+        responses=_responses(sim),
+    )(solve)  # fmt: skip
+
+
+async def _left(request: Request) -> None:
+    """Ends when the caller has gone."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+def _responses(sim: AnySim) -> dict[int | str, dict[str, Any]]:
+    schemas = {"params": sim.params.model_json_schema(mode="serialization"), "solution": solution_schema(solved(sim))}
+    answer = {"type": "object", "properties": schemas, "required": list(schemas), "additionalProperties": False}
+    text = {"type": "string"}
+    fields = {**dict.fromkeys(("type", "msg", "parameter", "received", "allowed"), text), "loc": {"type": "array"}}
+    item = {"type": "object", "properties": {**fields, "input": {}}, "required": [*fields, "input"]}
+    detail = {"type": "object", "properties": {"detail": {"type": "array", "items": item}}}
+    return {
+        200: _response("The state, and what follows from it", answer),
+        415: _response("The body isn't JSON"),
+        422: _response("What is wrong, parameter by parameter", detail),
+        429: _response("This address waits for too many long answers already"),
+        503: _response("The server has too much to do, or this took too long"),
+    }
+
+
+def _response(words: str, schema: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    plain = {"type": "object", "properties": {"detail": {"type": "string"}}}
+    return {"description": words, "content": {"application/json": {"schema": schema or plain}}}

@@ -1,0 +1,47 @@
+"""What goes wrong when somebody's message is obeyed: for them in words and as fields, and a line in the log."""
+
+from __future__ import annotations
+
+import logging
+import traceback
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from app.values import complaints, shown
+from geometry import GeometryError
+from sims.kit.params import Complaint, clipped
+from sims.kit.sim import Sim
+
+log = logging.getLogger("sim3")
+
+
+class Unknown(KeyError):
+    """A name that stands for nothing; `kind` says for what it should."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        super().__init__(name)
+        self.words = f"There is no {kind} named {shown(name)}."
+        self.complaint = Complaint("name", shown(name), clipped("one of: " + ", ".join(known), 400))
+
+
+def error_message(sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """The message that pages get; `given` are the parameters as they came. What nobody has foreseen is logged."""
+    if isinstance(error, Unknown):
+        return refused(error.words, error.complaint)
+    if isinstance(error, ValidationError):
+        return refused("", *(complaint for _, complaint in complaints(sim.params, given or {}, error)))
+    if isinstance(error, GeometryError):
+        known = error.argument in sim.params.model_fields
+        return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    log.error("%s can't go on from here: %r in %s, line %s", sim.slug, error, place.filename, place.lineno)
+    return refused("That went wrong on the server, whose log says how. The state is as it was.")
+
+
+def refused(words: str, *found: Complaint) -> dict[str, Any]:
+    """An error message; without words of its own it says what is wrong with each parameter."""
+    fields = [{"parameter": name, "received": received, "allowed": allowed} for name, received, allowed in found]
+    said = words or "; ".join(f"{name}: got {received}, allowed: {allowed}" for name, received, allowed in found)
+    return {"type": "error", "message": clipped(said, 400), "errors": fields[:20]}
