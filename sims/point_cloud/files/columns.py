@@ -71,6 +71,4 @@ def fits(unpacked: int, largest: int) -> None:
 
 def unpacked_colors(bits: npt.NDArray[np.uint32]) -> dict[str, Values]:
     """Red, green and blue of the four bytes that PCD keeps them in."""
-    return {
-        name: ((bits >> shift) & 255).astype(np.uint8) for name, shift in (("red", 16), ("green", 8), ("blue", 0))
-    }
+    return {name: ((bits >> shift) & 255).astype(np.uint8) for name, shift in (("red", 16), ("green", 8), ("blue", 0))}

@@ -70,9 +70,9 @@ def taken(table: Table, chosen: Sequence[str] = ()) -> list[str]:
     if chosen:
         rest = [role if role not in chosen else IGNORED for role in roles[len(chosen) :]]
         roles = [*chosen[: len(roles)], *rest]
-    for role, words in ROLES.items():
+    for role, shown in ROLES.items():
         if role != IGNORED and roles.count(role) > 1:
-            raise CloudFileError(f"{roles.count(role)} columns are taken for {words}: one can be.")
+            raise CloudFileError(f"{roles.count(role)} columns are taken for {shown}: one can be.")
     missing = [axis for axis in "xyz" if axis not in roles]
     if missing:
         names = ", ".join(name for name in table.names if name)[:120]

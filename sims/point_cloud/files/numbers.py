@@ -33,9 +33,9 @@ def is_number(cell: str) -> bool:
 def rows(
     text: bytes, line: int = 1, *, delimiter: str = "", quoted: bool = False, columns: Sequence[int] | None = None
 ) -> Array:
-    """Return a table (N, columns) of lines of numbers; empty lines don't count, and blanks part where nothing else does.
+    """Return a table (N, columns) of lines of numbers, between blanks where there is no delimiter.
 
-    `line` is the number of the first line, `columns` are those to read where others hold words. What says that it is
+    Empty lines don't count. `line` is the number of the first line, `columns` are those to read where others hold words. What says that it is
     no number becomes NaN. Raises CloudFileError that quotes the first line that isn't like the others.
     """
     try:
@@ -78,28 +78,28 @@ def _odd_line(text: bytes, line: int, delimiter: str, columns: Sequence[int] | N
     return CloudFileError("It has a line that isn't numbers like the others.")
 
 
-def stream(text: bytes, most: int = -1) -> Array:
-    """Return the numbers (at most n,) that stand one after the other, however many are on a line.
+def stream(text: bytes) -> Array:
+    """Return the numbers (n,) that stand one after the other, however many are on a line.
 
     Raises CloudFileError that quotes the first word that is no number.
     """
     try:
-        return _streamed(text, most)
+        return _streamed(text)
     except ValueError:
         pass
     text = _ODD.sub(b"nan", text)
     try:
-        return _streamed(text, most)
+        return _streamed(text)
     except ValueError:
         odd = next((word for word in text.split() if not is_number(word.decode("latin-1"))), b"")
         said = odd[:40].decode("utf-8", errors="replace")
         raise CloudFileError(f"There is something else among its numbers: “{said}”.") from None
 
 
-def _streamed(text: bytes, most: int) -> Array:
+def _streamed(text: bytes) -> Array:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # so older NumPys say what newer ones raise
         try:
-            return np.fromstring(text, np.float64, most, sep=" ") if text.strip() else np.empty(0)
+            return np.fromstring(text, np.float64, sep=" ") if text.strip() else np.empty(0)
         except DeprecationWarning as error:
             raise ValueError(str(error)) from None

@@ -68,8 +68,11 @@ def _dtype(header: Mapping[str, Sequence[str]]) -> np.dtype[np.void]:
     for k, (name, size, kind, count) in enumerate(zip(names, sizes, kinds, counts, strict=True)):
         letter = _KINDS.get(kind.upper(), "")
         if not (size.isdecimal() and count.isdecimal() and len(count) < 7 and int(size) in _SIZES.get(letter, ())):
-            raise CloudFileError(f"Its header is wrong: {name[:40]} of type {kind[:9]}, size {size[:9]}, {count[:9]} each.")
-        fields.append((f"{k} {name}", f"<{letter}{size}", (int(count),)))  # names such as _ stand there more than once
+            raise CloudFileError(
+                f"Its header is wrong: {name[:40]} of type {kind[:9]}, size {size[:9]}, {count[:9]} each."
+            )
+        shape = () if count == "1" else (int(count),)
+        fields.append((f"{k} {name}", f"<{letter}{size}", shape))  # names such as _ stand there more than once
     dtype = np.dtype(fields)
     if not dtype.itemsize:
         raise CloudFileError("Its header is wrong: its points have no numbers.")
@@ -78,7 +81,7 @@ def _dtype(header: Mapping[str, Sequence[str]]) -> np.dtype[np.void]:
 
 def _single(dtype: np.dtype[np.void]) -> list[str]:
     """Fields that are one number; paddings and histograms are none."""
-    return [f for f in dtype.names or () if dtype[f].shape == (1,) and f.split(" ", 1)[1] != "_"]
+    return [f for f in dtype.names or () if dtype[f].shape == () and f.split(" ", 1)[1] != "_"]
 
 
 def _count(header: Mapping[str, Sequence[str]]) -> int | None:

@@ -40,7 +40,7 @@ def strays(points: Array) -> npt.NDArray[np.bool_]:
 
 
 def origin_of(points: Array) -> Array | None:
-    """What to take from coordinates (N, 3) so far away that the browser would lose millimetres; None from nearer ones."""
+    """What to take from coordinates (N, 3) where the browser would else lose millimetres; None from near ones."""
     away = np.abs(points).max(axis=0) >= FAR
     return np.where(away, 100.0 * np.round(np.median(points, axis=0) / 100.0), 0.0) if away.any() else None
 

@@ -177,7 +177,11 @@ def _walked(data: bytes, start: int, element: _Element, order: str) -> tuple[dic
     """The same one by one, since their lists are of different lengths."""
     columns: dict[str, list[float]] = {name: [] for name in element.numbers()}
     parts = [
-        (struct.Struct(order + np.dtype(one.length or one.kind).char), one.name, one.length and np.dtype(one.kind).itemsize)
+        (
+            struct.Struct(order + np.dtype(one.length or one.kind).char),
+            one.name,
+            one.length and np.dtype(one.kind).itemsize,
+        )
         for one in element.properties
     ]
     try:
@@ -216,7 +220,7 @@ def _cut_off(element: _Element) -> CloudFileError:
 def _from_text(
     text: bytes, before: Sequence[_Element], points: _Element, behind: Sequence[_Element], line: int
 ) -> dict[str, Values]:
-    """Columns of the points in a text: in a line each, if it has as many as its header says, else as numbers in a row."""
+    """Columns of the points in a text: one on each line if there are as many lines, else as one row of numbers."""
     enough(points.count, 2 * len(points.properties), len(text) + 1)
     text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in text else text
     ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord("\n"))
@@ -231,9 +235,7 @@ def _from_text(
             raise _cut_off(points)
         if table.shape[1] != len(points.properties):
             width = len(points.properties)
-            raise CloudFileError(
-                f"Its header says {width} numbers for each point, its lines have {table.shape[1]}."
-            )
+            raise CloudFileError(f"Its header says {width} numbers for each point, its lines have {table.shape[1]}.")
     else:
         table = _from_stream(text, before, points)
     kinds = {one.name: one.kind for one in points.properties}
@@ -247,11 +249,11 @@ def _from_stream(text: bytes, before: Sequence[_Element], points: _Element) -> A
     start = sum(element.count * len(element.properties) for element in before)
     if plain:
         enough(start + points.count * width, 2, len(text) + 1, "numbers")
-    numbers = stream(text, start + points.count * width if plain else -1)
+    numbers = stream(text)
     if plain:
         if len(numbers) < start + points.count * width:
             raise _cut_off(points)
-        return numbers[start:].reshape(points.count, width)
+        return numbers[start : start + points.count * width].reshape(points.count, width)
     values, at = numbers.tolist(), 0
     table = np.empty((points.count, len(points.numbers())))
     try:

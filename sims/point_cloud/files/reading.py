@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Array
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import placing
 from sims.point_cloud.files.columns import CloudFileError, Table

@@ -99,8 +99,11 @@ def read_table(data: bytes) -> Table:
 def decoded(data: bytes) -> bytes:
     """A text file in UTF-8 or the like, its lines ending in one line feed each, blank lines before it taken away."""
     coding = next((name for mark, name in _BOMS if data.startswith(mark)), "")
-    if not coding and len(data) > 3 and data[:200:2].count(0) + data[1:200:2].count(0) >= min(len(data), 200) // 2 - 1:
-        coding = "utf-16-le" if data[1] == 0 else "utf-16-be"  # without a mark, of ASCII every second byte is zero
+    first, second = data[:200:2], data[1:200:2]  # of ASCII in UTF-16 without a mark, every second byte is zero
+    if not coding and second and not any(second) and all(first):
+        coding = "utf-16-le"
+    elif not coding and second and not any(first) and all(second):
+        coding = "utf-16-be"
     if coding not in ("", "utf-8"):
         data = data.decode(coding, errors="replace").encode()
     data = data.removeprefix(codecs.BOM_UTF8)
@@ -189,7 +192,9 @@ def _with_decimals(form: Form, cells: Sequence[str]) -> Form:
         return Form(form.delimiter, comma, "." if comma else ",", quoted=form.quoted)
     comma = any(map(_DECIMAL_COMMA.match, cells))
     if comma and any("." in cell and NUMBER.match(cell) for cell in cells):
-        raise CloudFileError("It writes some decimals after a comma and some after a point: which are meant isn't sure.")
+        raise CloudFileError(
+            "It writes some decimals after a comma and some after a point: which are meant isn't sure."
+        )
     return Form(form.delimiter, comma, quoted=form.quoted)
 
 

@@ -48,7 +48,9 @@ def unit_of(table: Table, roles: Sequence[str], points: Array, chosen: str) -> U
     if chosen != "auto":
         return Unit(chosen, "metres" if chosen == "degrees" else chosen, "as chosen")
     if table.unit:
-        return Unit(table.unit, table.height_unit or ("metres" if table.unit == "degrees" else table.unit), table.unit_from)
+        return Unit(
+            table.unit, table.height_unit or ("metres" if table.unit == "degrees" else table.unit), table.unit_from
+        )
     name = table.names[roles.index("x")].lower()
     if re.match(r"lon|lng", name):
         return Unit("degrees", "metres", "as its columns are called")
@@ -72,7 +74,9 @@ def _looks_geographic(points: Array) -> bool:
     return bool(inside and 0.0 < wide < 0.2 and middle[:2].min() > 100.0 * wide and size[2] > 20.0 * wide)
 
 
-def in_metres(points: Array, unit: Unit, sensor: Array | None) -> tuple[Array, Array | None, tuple[float, float] | None]:
+def in_metres(
+    points: Array, unit: Unit, sensor: Array | None
+) -> tuple[Array, Array | None, tuple[float, float] | None]:
     """Points (N, 3) and a sensor (3,) in metres; of degrees also the longitude and latitude that became x = y = 0."""
     height = METRES[unit.height]
     if unit.name != "degrees":

@@ -51,7 +51,9 @@ def intensity_of(values: Values) -> tuple[Array, tuple[float, float]]:
 
 def normals_of(components: list[Values]) -> Array | None:
     """Unit normals (N, 3), zero where the file has none; None where it has none at all."""
-    vectors = np.stack([np.nan_to_num(c.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0) for c in components], axis=1)
+    vectors = np.stack(
+        [np.nan_to_num(c.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0) for c in components], axis=1
+    )
     lengths = np.linalg.norm(vectors, axis=1)
     vectors[lengths > 0.0] /= lengths[lengths > 0.0, None]
     return vectors if lengths.any() else None
