@@ -37,6 +37,10 @@ class Params(BaseModel):
         """Least and greatest value of a numeric field in this state; override where they depend on its `form`."""
         return _declared_bounds(type(self), name)
 
+    def increment(self, name: str) -> float:
+        """By how much a step moves the slider of a numeric field in this state; override with `bounds`."""
+        return float(extra(type(self).model_fields[name])["step"])
+
     def label(self, name: str) -> str:
         """Words beside the control of a field in this state."""
         return _declared_title(type(self), name)
@@ -268,11 +272,14 @@ def numbers(
 
 
 def letters(
-    default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = ""
-) -> Any:
-    """One to `most` letters, together as in `zyy`; each has a dropdown, called as `entry` says: "Joint {} axis"."""
-    hints: Any = {"group": group, "control": "letters", "labels": dict(labels), "most": most, "entry": entry}
-    pattern = f"^[{''.join(labels)}]{{1,{most}}}$"
+    default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = "",
+    least: int = 1,
+) -> Any:  # fmt: skip
+    """`least` to `most` letters, together as in `zyy`; each has a dropdown, called as `entry` says: "Joint {} axis"."""
+    hints: Any = {
+        "group": group, "control": "letters", "labels": dict(labels), "fewest": least, "most": most, "entry": entry,
+    }  # fmt: skip
+    pattern = f"^[{''.join(labels)}]{{{least},{most}}}$"
     return Field(default, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 
 
@@ -455,7 +462,8 @@ def allowed_values(field: FieldInfo) -> str:
     if words := choices(field):
         return "one of: " + ", ".join(words)
     if kind == "letters":
-        return f"1 to {extra(field)['most']} letters, each one of: {', '.join(extra(field)['labels'])}"
+        count = f"{extra(field)['fewest']} to {extra(field)['most']}"
+        return f"{count} letters, each one of: {', '.join(extra(field)['labels'])}"
     if "low" in extra(field):
         ranges = list(zip(*entry_bounds(field), strict=True)) or [field_bounds(field)]
         count = f"{extra(field)['least']} to {extra(field)['most']}" if "least" in extra(field) else f"{len(ranges)}"

@@ -105,6 +105,7 @@ class Control:
         if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
+            self.handle.step = params.increment(self.name)
         if (label := worded(params, self.name)) != self.label:
             self.label = self.handle.label = label
 
@@ -341,7 +342,7 @@ class Viewer:
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
         else:
             bounds = params.bounds(name)
-            handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
+            handle = gui.add_slider(label, *bounds, params.increment(name), value, **shared)
 
         control = Control(name, handle, label, bounds, offered, absent)
         self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))

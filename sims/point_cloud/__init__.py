@@ -37,6 +37,7 @@ SIM = Sim(
     panes=panes,
     actions=(
         Action("play", "Play", "The process from its start; without one, growing voxels", model.play),
+        Action("columns", "Choose its columns", "Say what each column of the file is", model.choose_columns, group=OWN),
         Action("step", "Next step", "The process one step on; from the last one back to its start", model.next_step),
     ),
     handles={"/cloud": pick},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
@@ -9,9 +10,10 @@ from typing import Any, Literal, Self
 from pydantic import model_validator
 
 from geometry.arrays import Array
-from sims.kit.params import Params, choice, number, spell, switch, text
+from sims.kit.params import Params, choice, letters, number, spell, switch, text
 from sims.kit.sim import DRAWN, Step, View
 from sims.point_cloud import library, processes
+from sims.point_cloud.files.meaning import ROLES
 from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
 from sims.point_cloud.shown import Drawn
 
@@ -23,6 +25,14 @@ VIEWS = {
     "two-scans": View((3.4, -5.6, 3.4), (-0.1, -0.1, 0.95), 3.3),
 }
 OWN = "Your own data"
+MOST_COLUMNS = 12
+"""Columns, the first ones, of a file that can be chosen for something else."""
+SPANS = {"voxel_size": 1.0, "distance": 2.0}
+"""Greatest lengths, in metres, for a cloud as large as a room; those of a file go with its size."""
+ROOM = 7.0
+"""Metres that a room is across."""
+FARTHEST = 2_000.0
+"""Metres that any length may have."""
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
 
@@ -66,10 +76,10 @@ class CloudParams(Params):
         2.0, 0.5, 10.0, step=0.5, title="Point size", description="About in pixels, as the sim opens"
     )
     voxel_size: float = number(
-        0.0, 0.0, 1.0, step=0.005, unit="m", title="Voxel size",
+        0.0, 0.0, FARTHEST, step=0.005, unit="m", title="Voxel size",
         description="Edge of the cells; the points in each become their mean. At 0 all points are shown",
     )  # fmt: skip
-    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals, to the sensor")
+    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals")
     neighbors: int = number(
         16, 5, 50, step=1, title="Neighbours k",
         description="How many nearest points, itself included, a normal and an outlier are judged by",
@@ -100,7 +110,7 @@ class CloudParams(Params):
         labels={"plane": "Point to plane", "point": "Point to point"}, group="Settings of the process",
     )  # fmt: skip
     distance: float = number(
-        0.0, 0.0, 2.0, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
+        0.0, 0.0, FARTHEST, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
         description="At 0 it follows from how dense the cloud is",
     )  # fmt: skip
     deviations: float = number(
@@ -111,6 +121,24 @@ class CloudParams(Params):
     file: str | None = text(
         title="File", description="A cloud of your own, or one of this server's folder", control="choice", group=OWN,
         pattern=library.NAME, allowed="the name of a file, without a path",
+    )  # fmt: skip
+    units: Literal["auto", "metres", "millimetres", "feet", "us-feet", "degrees"] = choice(
+        "auto", title="Its unit", group=OWN,
+        description="In which unit the file has its coordinates; degrees are longitude and latitude",
+        labels={
+            "auto": "As it seems",
+            "metres": "Metres",
+            "millimetres": "Millimetres",
+            "feet": "Feet",
+            "us-feet": "US survey feet",
+            "degrees": "Degrees, heights in metres",
+        },
+    )  # fmt: skip
+    columns: str = letters(
+        "", least=0, most=MOST_COLUMNS, title="Its columns", entry="Column {}", group=OWN,
+        labels=dict(zip(library.LETTERS, ROLES.values(), strict=True)),
+        description="What the columns of the file are taken for, the first ones first; none: as they seem. "
+        "The read-outs show its first lines",
     )  # fmt: skip
 
     def options(self, name: str) -> Mapping[Any, str]:
@@ -129,6 +157,11 @@ class CloudParams(Params):
         return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
 
     @property
+    def asked(self) -> library.Asked:
+        """The file, and how it is to be read."""
+        return library.Asked(self.file, self.columns, self.units)
+
+    @property
     def facing(self) -> int:
         """Neighbours that a registration's normals follow from: to points it needs none, and they change nothing."""
         return self.neighbors if self.method == "plane" else 16
@@ -136,7 +169,7 @@ class CloudParams(Params):
     @property
     def course(self) -> tuple[Any, ...]:
         """All that a registration follows from."""
-        return self.dataset, self.file, self.voxel_size, self.facing, self.method, self.distance
+        return self.dataset, self.asked, self.voxel_size, self.facing, self.method, self.distance
 
     @property
     def last_step(self) -> int:
@@ -146,25 +179,46 @@ class CloudParams(Params):
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step":
             return 0, max(self.last_step, self.step, 1)  # a link may name any step: beyond the last one is the last
+        if name in SPANS:  # a link may name any length: the file may not be read yet
+            return 0.0, SPANS[name] if self.dataset != "file" else max(SPANS[name] * self.scale, getattr(self, name))
         return super().bounds(name)
 
+    def increment(self, name: str) -> float:
+        step = super().increment(name)
+        return step * self.scale if name in SPANS and self.dataset == "file" else step
+
+    @property
+    def scale(self) -> float:
+        """How many times as large as a room the file's cloud is, in round numbers; 1 as long as nobody knows."""
+        across = library.across(self.asked) if self.dataset == "file" else None
+        return 10.0 ** min(max(round(math.log10(across / ROOM)), -6), 3) if across else 1.0
+
     def form(self) -> tuple[Any, ...]:
-        return *super().form(), self.last_step
+        return *super().form(), self.last_step, self.scale
 
     def label(self, name: str) -> str:
         return WHAT_DISTANCE_IS[self.process] if name == "distance" else super().label(name)
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         """What `changed` does; no step is beyond the last, and a point that may be another is let go."""
-        now = self._with_step(changes)
+        now = self._with_step(self._whole(self._swapped(changes)))
         turned = {name for name, value in now.items() if value != getattr(self, name)}
-        if "file" in turned and now["file"]:
-            now.setdefault("dataset", "file")
+        if "file" in turned:
+            now = {"columns": "", "units": "auto", **({"dataset": "file"} if now["file"] else {}), **now}
         if "step" in now:
             now["step"] = min(now["step"], self.model_copy(update=now).last_step)
         if self.selected is not None and self._renumbers(turned):
             now.setdefault("selected", None)
         return super().moved(now)
+
+    def _swapped(self, changes: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Where a column becomes what another one was, that becomes what this one was."""
+        field, _, k = next(iter(changes), "").partition(".")
+        if field != "columns" or len(changes) > 1 or not k or int(k) >= len(self.columns):
+            return changes
+        (letter,) = changes.values()
+        other = self.columns.find(letter) if letter != "-" else -1
+        return changes if other < 0 else {**changes, f"columns.{other}": self.columns[int(k)]}
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """A process begins at its result, a registration at its start."""
@@ -232,6 +286,12 @@ def next_step(p: CloudParams) -> dict[str, Any]:
     """One step on; from the last one back to the start."""
     low, high = p.bounds("step")
     return {"step": p.step + 1 if p.step < high else low}
+
+
+def choose_columns(p: CloudParams) -> dict[str, Any]:
+    """What the columns of the file are taken for, to be changed one by one."""
+    spelled = {role: letter for letter, role in library.LETTERS.items()}
+    return {"columns": "".join(spelled[role] for role in library.roles(p.asked)[:MOST_COLUMNS])}
 
 
 def view_of(p: CloudParams) -> View:

@@ -23,7 +23,7 @@ MOST_LABELS = 7
 
 def source(p: CloudParams) -> Cloud:
     """The cloud of a state."""
-    return library.find(p.file) if p.dataset == "file" else dataset(p.dataset)
+    return library.find(p.asked) if p.dataset == "file" else dataset(p.dataset)
 
 
 @dataclass
@@ -53,7 +53,7 @@ def solve(p: CloudParams) -> CloudSolution:
         minimum=low, maximum=high, dimensions=high - low, selected=_selected(p, thin, result),
         colored_by=colored_by(cloud, p.color), ground=result.ground, clusters=result.clusters,
         outliers=result.outliers, registration=result.registration, surface=result.surface,
-        trouble=library.trouble(p.file) if p.dataset == "file" else "",
+        trouble=library.trouble(p.asked) if p.dataset == "file" else "",
         drawn=_drawn(p, cloud, thin, result, low, high),
     )  # fmt: skip
 

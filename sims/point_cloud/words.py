@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, symbol
+from sims.kit.readout import THIN, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.files.meaning import ROLES
 from sims.point_cloud.library import UPLOAD
 from sims.point_cloud.model import CloudParams, CloudSolution
 from sims.point_cloud.processes import Registered
@@ -50,14 +52,26 @@ def _file(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     if not len(cloud):
         return
     yield Note(f"From the file “{cloud.name}”.")
-    if cloud.dropped:
-        yield Note(f"{count(cloud.dropped)} points without finite coordinates were left out.", "near")
-    if cloud.left_out:
-        yield Note(f"Too many for a browser: {count(cloud.left_out)} points, evenly chosen, were left out.", "near")
+    for words in cloud.cautions:
+        yield Note(words, "near")
+    for words in cloud.notes:
+        yield Note(words)
+    if cloud.columns:
+        yield _columns(cloud)
     if cloud.origin is not None:
         yield Formula("Far from its origin: add to the coordinates", symbol("o"), row(cloud.origin.tolist(), 0), "m")
     if p.file and p.file.startswith(UPLOAD):
         yield Note("A link can't carry your file: it works here, as long as somebody has the sim open.")
+
+
+def _columns(cloud: Cloud) -> Table:
+    """What the columns of a file were taken for, with its first lines."""
+    named = [name or f"column {k}" for k, name in enumerate(cloud.columns, 1)]
+    lines = max(map(len, cloud.preview), default=0)
+    rows: list[Sequence[str]] = [("column", "taken for", *(f"line {k}" for k in range(1, lines + 1)))]
+    for name, role, entries in zip(named, cloud.roles, cloud.preview, strict=True):
+        rows.append((name, ROLES[role].lower(), *entries, *[""] * (lines - len(entries))))
+    return Table("Its columns", rows)
 
 
 def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
@@ -84,11 +98,18 @@ def _selected(s: CloudSolution) -> Iterator[Formula]:
     if chosen.color is not None:
         yield Formula("Its colour: red, green, blue", symbol("c"), row(chosen.color.tolist(), 0))
     if chosen.normal is not None:
-        yield Formula("Its normal, towards the sensor", symbol("n"), row(chosen.normal.tolist()))
+        yield Formula(f"Its normal, {_facing(s.drawn.cloud)}", symbol("n"), row(chosen.normal.tolist()))
     if chosen.intensity is not None:
         yield Formula("Its intensity", symbol("I"), mathml(chosen.intensity))
     if chosen.variation is not None:
         yield Formula("Its surface variation: 0 on a plane, at most 1/3", symbol("σ", "n"), mathml(chosen.variation, 4))
+
+
+def _facing(cloud: Cloud) -> str:
+    """Which of the two ways normals point."""
+    if cloud.normals is not None:
+        return "as the file has it"
+    return "upwards, for nobody knows where the sensor was" if cloud.sensor is None else "towards the sensor"
 
 
 def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:

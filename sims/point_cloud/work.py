@@ -48,14 +48,23 @@ def _thinned(cloud: Cloud, size: float) -> Cloud:
         points=cells.points,
         colors=None if cloud.colors is None else np.rint(cells.mean(cloud.colors)).astype(np.uint8),
         intensity=None if cloud.intensity is None else cells.mean(cloud.intensity),
+        normals=None if cloud.normals is None else _unit(cells.mean(cloud.normals)),
     )
+
+
+def _unit(vectors: Array) -> Array:
+    """Vectors (N, 3) of length 1; those that cancel each other out stay zero."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    vectors[lengths[:, 0] <= 1e-9] = 0.0
+    return np.asarray(vectors / np.maximum(lengths, 1e-9))
 
 
 @dataclass(frozen=True, eq=False)
 class Local:
     """What the neighbours of each point say: unit normals (N, 3) to the sensor, and the surface variation (N,).
 
-    Where they are on a line, or too few, there is no normal and no variation: zero and NaN.
+    Where they are on a line, or too few, there is no normal and no variation: zero and NaN. A cloud of a file that has
+    normals keeps these; one whose sensor nobody knows has them point up.
     """
 
     normals: Array
@@ -79,7 +88,7 @@ def local(cloud: Cloud, neighbors: int) -> Local:
             vectors[rows] = np.nan_to_num(found.normals, nan=0.0)
             variation[rows] = np.where(found.defined, found.variation, np.nan)
         before += len(rows)
-    return Local(vectors, variation)
+    return Local(vectors if cloud.normals is None else cloud.normals, variation)
 
 
 def normals(cloud: Cloud, neighbors: int) -> Array:

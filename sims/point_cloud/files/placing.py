@@ -36,7 +36,7 @@ def strays(points: Array) -> npt.NDArray[np.bool_]:
     far = distance > reach
     if some is not points and not (distance[zero] > GAP * reach).all():
         far &= ~zero
-    return far
+    return np.asarray(far)
 
 
 def origin_of(points: Array) -> Array | None:

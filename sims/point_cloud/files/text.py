@@ -160,6 +160,10 @@ def form_of(lines: Sequence[str]) -> Form:
         if mark == "," and not quoted and _decimal_commas_only(lines):
             return Form("", decimal_comma=True)
         if mark in ",;" and any(re.match(r"\S+\s+\S", c) for c in cells) and _all_numbers(lines, Form("", mixed=True)):
+            if any(_DECIMAL_COMMA.match(word) for line in lines for word in line.split()):
+                raise CloudFileError(
+                    "A comma may part two of its numbers, or begin decimals: which is meant isn't sure."
+                )
             return Form("", mixed=True)
         if mark == "\t" and not any(map(_empty, cells)) and len(form.cells(lines[0])) < len(lines[0].split()):
             break  # tabs and blanks both part cells
