@@ -408,6 +408,7 @@ document.addEventListener("click", (event) => {
 let tidying = false;
 
 new MutationObserver(() => {
+  tellHeightSoon();
   keepFocus();
   light();
   goLive();
@@ -642,6 +643,14 @@ function wantedHeight() {
   return Math.round(Math.min(Math.max(least, ...content), most));
 }
 
+let telling = 0;
+
+function tellHeightSoon() {
+  if (!embedded || !sim.live) return;
+  clearTimeout(telling);
+  telling = setTimeout(() => Math.abs(wantedHeight() - told) > 8 && tellHeight(), 400);
+}
+
 function tellHeight() {
   const height = wantedHeight();
   told = height;
@@ -664,7 +673,7 @@ addEventListener("resize", () => {
   clearTimeout(sizing);
   sizing = setTimeout(() => {
     if (!innerWidth || !innerHeight) return; // hidden again
-    if (sim.live && Math.abs(wantedHeight() - told) > 8) tellHeight();
+    tellHeightSoon();
     const view = sim.fit();
     if (chosen || Math.hypot(...view.map((v, i) => v - looked[i])) < 0.02 * sim.radius) return;
     looked = view;
