@@ -146,7 +146,7 @@ def test_an_odd_file_is_shown_whatever_is_done_with_it(local: Local, name: str, 
     desk = Desk(local, "show_normals=1&color=variation")
     assert desk.bring(name, data).status_code == 200
     assert desk.solution().points_out == count
-    assert isinstance(desk.session.kept, Cloud)
+    assert isinstance(desk.session.kept, library.Brought)
     assert not set(desk.session.kept.name) & set("/\\")
     for process in ("ground", "clusters", "outliers", "register", "surface"):
         solution = desk.session.sim.solve(desk.params.changed({"process": process, "selected": 0}))
@@ -291,10 +291,10 @@ def test_a_file_of_the_folder_that_was_replaced_is_read_anew(local: Local, folde
 def test_what_a_child_failed_over_is_tried_again_after_a_while(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
     """It may have been for want of memory; a refusal stays as it is."""
     before = {name: reading_of(local, name)["trouble"] for name in ("one_line.ply", "broken.ply")}
-    failed = library._readings["one_line.ply"], library._readings["broken.ply"]
+    failed = library._readings["one_line.ply", library.GUESSED], library._readings["broken.ply", library.GUESSED]
     monkeypatch.setattr(library, "AGAIN", 0.0)
     assert {name: reading_of(local, name)["trouble"] for name in before} == before
-    again = library._readings["one_line.ply"], library._readings["broken.ply"]
+    again = library._readings["one_line.ply", library.GUESSED], library._readings["broken.ply", library.GUESSED]
     assert (again[0] is failed[0]) == (failed[0].failed_at is None)
     assert again[1] is failed[1]
 

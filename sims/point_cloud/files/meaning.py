@@ -16,6 +16,8 @@ ROLES = {
     "nx": "Normal x", "ny": "Normal y", "nz": "Normal z", IGNORED: "Not used",
 }  # fmt: skip
 """What a column may be taken for, and how that is shown."""
+LETTERS = {"r": "red", "g": "green", "b": "blue", "i": "intensity", "u": "nx", "v": "ny", "w": "nz"}
+"""How some of them are spelled in a choice of columns; the others are letters already."""
 COLORS = ("red", "green", "blue")
 NORMALS = ("nx", "ny", "nz")
 _NAMES = {
@@ -37,6 +39,17 @@ _UNIT = re.compile(r"[\[(].*?[\])]|_(?:m|mm|cm|ft|deg)$")
 _ROW_NUMBERS = {"", "index", "id", "no", "nr", "number", "point", "point_id", "pointid", "fid", "unnamed_0"}
 _TRIAL = 20_000
 """Points whose values are looked at."""
+
+
+def roles_of(letters: str) -> tuple[str, ...]:
+    """What a choice of columns, one letter for each, takes them for."""
+    return tuple(LETTERS.get(letter, letter) for letter in letters)
+
+
+def letters_of(roles: Sequence[str]) -> str:
+    """The same as letters."""
+    letters = {role: letter for letter, role in LETTERS.items()}
+    return "".join(letters.get(role, role) for role in roles)
 
 
 def named_roles(names: Sequence[str]) -> list[str]:

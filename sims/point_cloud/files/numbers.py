@@ -35,8 +35,9 @@ def rows(
 ) -> Array:
     """Return a table (N, columns) of lines of numbers, between blanks where there is no delimiter.
 
-    Empty lines don't count. `line` is the number of the first line, `columns` are those to read where others hold words. What says that it is
-    no number becomes NaN. Raises CloudFileError that quotes the first line that isn't like the others.
+    Empty lines don't count. `line` is the number of the first line, `columns` are those to read where others hold
+    words. What says that it is no number becomes NaN. Raises CloudFileError that quotes the first line that isn't like
+    the others.
     """
     try:
         return _loaded(text, delimiter, quoted, columns)
