@@ -122,7 +122,8 @@ def _by_values(table: Table) -> list[str]:
     """Of columns without names: x, y and z come first, but for row numbers; then what their values look like."""
     values = [_some(v) for v in table.values]
     numbers = [k for k, v in enumerate(values) if v is not None]
-    first = 1 if len(numbers) > 3 and _counts(values[numbers[0]]) else 0
+    # six are likelier coordinates and colours, or normals, of which x is evenly spaced
+    first = 1 if len(numbers) > 3 and len(numbers) != 6 and _counts(values[numbers[0]], _every(len(table))) else 0
     roles = [IGNORED] * len(values)
     for axis, k in zip("xyz", numbers[first:], strict=False):
         roles[k] = axis
@@ -134,15 +135,18 @@ def _by_values(table: Table) -> list[str]:
 
 def _some(values: Values | None) -> Array | None:
     """Values of so many points, evenly over the file, that show what they are."""
-    return None if values is None else values[:: -(-len(values) // _TRIAL) or 1].astype(np.float64)
+    return None if values is None else values[:: _every(len(values))].astype(np.float64)
 
 
-def _counts(values: Array | None) -> bool:
-    """Row numbers."""
+def _every(count: int) -> int:
+    return max(-(-count // _TRIAL), 1)
+
+
+def _counts(values: Array | None, every: int) -> bool:
+    """Row numbers, of lines that are evenly picked."""
     if values is None or len(values) < 3 or values[0] not in (0.0, 1.0):
         return False
-    steps = np.diff(values)
-    return bool((steps == steps[0]).all() and steps[0] >= 1.0 and steps[0].is_integer())
+    return bool((np.diff(values) == every).all())
 
 
 def _attributes(values: Sequence[Array | None]) -> Iterator[str]:
