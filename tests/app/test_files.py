@@ -6,7 +6,7 @@ import asyncio
 import os
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -79,6 +79,14 @@ class Desk:
     @property
     def params(self) -> Any:
         return self.session.params
+
+    def change(self, changes: Mapping[str, Any]) -> None:
+        """What a control does, on the server's loop."""
+
+        async def changed() -> None:
+            self.session.change(changes)
+
+        asyncio.run_coroutine_threadsafe(changed(), self.local._host.loop).result(PATIENCE)
 
     def solution(self) -> Any:
         wait_for(lambda: self.session._drawing is None, "the drawing to end")
@@ -305,20 +313,20 @@ def test_columns_and_units_are_chosen_in_the_api_the_link_and_the_controls(local
     desk = Desk(local)
     assert desk.bring("mine.xyz", b"1 2 3 9\n4 5 6 9\n7 8 1 9\n").status_code == 200
     assert desk.params.entries("columns") == "xyzi"
-    desk.session.change({"columns.0": "z"})
-    desk.session.change({"columns.3": "-"})
+    desk.change({"columns.0": "z"})
+    desk.change({"columns.3": "-"})
     assert desk.params.columns == "zyx-", "the column that was z became x"
     solution = desk.solution()
     assert solution.source.taken_for == ["z", "y", "x", "-"]
     np.testing.assert_allclose(solution.minimum, [1.0, 2.0, 1.0])
     np.testing.assert_allclose(solution.maximum, [6.0, 8.0, 7.0])
     assert "columns=zyx-" in desk.params.query()
-    desk.session.change({"units": "feet"})
+    desk.change({"units": "feet"})
     np.testing.assert_allclose(desk.solution().maximum, np.array([6.0, 8.0, 7.0]) * 0.3048, atol=1e-6)
-    desk.session.change({"columns.0": "-"})
+    desk.change({"columns.0": "-"})
     assert "no coordinate z" in desk.solution().trouble
     assert desk.params.entries("columns") == "-yx-", "it can be mended"
-    desk.session.change({"columns": "", "units": "auto"})
+    desk.change({"columns": "", "units": "auto"})
     assert desk.solution().points_in == 3
 
     body = {"dataset": "file", "file": "church.xyz", "columns": "yxz", "units": "millimetres"}

@@ -84,7 +84,7 @@ def table(*columns: np.ndarray) -> str:
 
 def units() -> np.ndarray:
     vectors = SOME.normal(size=(40, 3))
-    return np.round(vectors / np.linalg.norm(vectors, axis=1, keepdims=True), 6)
+    return np.asarray(np.round(vectors / np.linalg.norm(vectors, axis=1, keepdims=True), 6))
 
 
 BYTES = SOME.integers(0, 256, (40, 3))
