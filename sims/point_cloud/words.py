@@ -65,9 +65,9 @@ def _file(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
 
 def _taken(cloud: Cloud) -> str:
     """What each column of a file was taken for, in their order."""
-    names = [name or str(k + 1) for k, name in enumerate(cloud.columns)]
-    used = [f"{ROLES[role]} (“{name}”)" for name, role in zip(names, cloud.roles, strict=True) if role != IGNORED]
-    rest = [f"“{name}”" for name, role in zip(names, cloud.roles, strict=True) if role == IGNORED]
+    names = [f"“{name}”" if name else f"column {k + 1}" for k, name in enumerate(cloud.columns)]
+    used = [f"{ROLES[role]} ({name})" for name, role in zip(names, cloud.roles, strict=True) if role != IGNORED]
+    rest = [name for name, role in zip(names, cloud.roles, strict=True) if role == IGNORED]
     return ", ".join(used) + (f"; not used: {', '.join(rest)}" if rest else "")
 
 
