@@ -37,10 +37,6 @@ class Params(BaseModel):
         """Least and greatest value of a numeric field in this state; override where they depend on its `form`."""
         return _declared_bounds(type(self), name)
 
-    def increment(self, name: str) -> float:
-        """By how much a step moves the slider of a numeric field in this state; override with `bounds`."""
-        return float(extra(type(self).model_fields[name])["step"])
-
     def label(self, name: str) -> str:
         """Words beside the control of a field in this state."""
         return _declared_title(type(self), name)
@@ -48,6 +44,14 @@ class Params(BaseModel):
     def entry_label(self, name: str, k: int) -> str:
         """Words beside the control of the k-th entry, from 0, of a list."""
         return str(extra(type(self).model_fields[name])["entry"]).format(k + 1)
+
+    def entries(self, name: str) -> Any:
+        """The entries of a list that have a control each in this state."""
+        return getattr(self, name)
+
+    def increment(self, name: str) -> float:
+        """By how much a step of a slider changes a number in this state."""
+        return float(extra(type(self).model_fields[name])["step"])
 
     def options(self, name: str) -> Mapping[Any, str]:
         """What the dropdown of a choice or an optional number offers in this state: each value, and how it is shown."""
@@ -86,7 +90,7 @@ class Params(BaseModel):
             field, _, k = name.partition(".")
             if not k:
                 whole[name] = value
-            elif int(k) < len(entries := whole.get(field, getattr(self, field))):  # else it was taken away meanwhile
+            elif int(k) < len(entries := whole.get(field, self.entries(field))):  # else it was taken away meanwhile
                 put = value if isinstance(entries, str) else (value,)
                 whole[field] = entries[: int(k)] + put + entries[int(k) + 1 :]
         return whole
@@ -273,13 +277,13 @@ def numbers(
 
 def letters(
     default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = "",
-    least: int = 1,
+    fewest: int = 1,
 ) -> Any:  # fmt: skip
-    """`least` to `most` letters, together as in `zyy`; each has a dropdown, called as `entry` says: "Joint {} axis"."""
+    """`fewest` to `most` letters, together as in `zyy`, with a dropdown each, called as in `entry`: "Joint {} axis"."""
     hints: Any = {
-        "group": group, "control": "letters", "labels": dict(labels), "fewest": least, "most": most, "entry": entry,
+        "group": group, "control": "letters", "labels": dict(labels), "most": most, "entry": entry, "fewest": fewest,
     }  # fmt: skip
-    pattern = f"^[{''.join(labels)}]{{{least},{most}}}$"
+    pattern = f"^[{''.join(labels)}]{{{fewest},{most}}}$"
     return Field(default, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 
 
@@ -462,8 +466,8 @@ def allowed_values(field: FieldInfo) -> str:
     if words := choices(field):
         return "one of: " + ", ".join(words)
     if kind == "letters":
-        count = f"{extra(field)['fewest']} to {extra(field)['most']}"
-        return f"{count} letters, each one of: {', '.join(extra(field)['labels'])}"
+        hints = extra(field)
+        return f"{hints['fewest']} to {hints['most']} letters, each one of: {', '.join(hints['labels'])}"
     if "low" in extra(field):
         ranges = list(zip(*entry_bounds(field), strict=True)) or [field_bounds(field)]
         count = f"{extra(field)['least']} to {extra(field)['most']}" if "least" in extra(field) else f"{len(ranges)}"

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple, Protocol
@@ -84,6 +85,8 @@ class Control:
     """Of a dropdown: each value of the parameter, and how it is shown."""
     absent: float | None = None
     """What stands for a number that isn't there."""
+    increment: float | None = None
+    """By how much a step of a slider changes it."""
 
     def draw(self, params: Params) -> None:
         value = getattr(params, self.name)
@@ -105,7 +108,9 @@ class Control:
         if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
-            self.handle.step = params.increment(self.name)
+        if self.increment is not None and (increment := params.increment(self.name)) != self.increment:
+            self.increment = self.handle.step = increment
+            self.handle.precision = decimals(increment)
         if (label := worded(params, self.name)) != self.label:
             self.label = self.handle.label = label
 
@@ -170,6 +175,7 @@ class Viewer:
         self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
+        self._preview: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
         if self._panes is None:
@@ -214,6 +220,9 @@ class Viewer:
             if self._readouts is not None:
                 html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
                 set_property(self._readouts, "content", html)
+            if self._preview is not None and self.sim.files is not None:
+                preview = self.sim.files.preview(params)
+                set_property(self._preview, "content", "" if preview is None else readout.render([preview]))
             if self._panes is not None and self.sim.panes is not None:
                 panes = self.sim.panes(params, solution, self.palette)
                 set_property(self._panes, "content", pane.render(panes, self._style))
@@ -285,6 +294,8 @@ class Viewer:
         for group, names in groups.items():
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
                 for name in names:
+                    if self.sim.files is not None and name == self.sim.files.previewed:
+                        self._preview = gui.add_html("")
                     self._controls += [self._control(params, name), *self._presets(params, name)]
                 if self.sim.files is not None and group == self.sim.files.group:
                     gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))
@@ -322,6 +333,7 @@ class Viewer:
         bounds: tuple[float, float] | None = None
         offered: Mapping[Any, str] | None = None
         absent: float | None = None
+        increment: float | None = None
         handle: Any
         if hints["control"] in ("numbers", "letters"):
             return Entries(gui, params, name, shared, self._listen, self._host.change)
@@ -342,9 +354,10 @@ class Viewer:
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
         else:
             bounds = params.bounds(name)
-            handle = gui.add_slider(label, *bounds, params.increment(name), value, **shared)
+            increment = params.increment(name)
+            handle = gui.add_slider(label, *bounds, increment, value, **shared)
 
-        control = Control(name, handle, label, bounds, offered, absent)
+        control = Control(name, handle, label, bounds, offered, absent, increment)
         self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
         return control
 
@@ -414,6 +427,11 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
         f"{files}</div>"
     )
+
+
+def decimals(increment: float) -> int:
+    """How many decimals a slider of such steps needs."""
+    return min(max(-int(Decimal(f"{increment:.3g}").normalize().as_tuple().exponent), 0), 9)
 
 
 def bring(endings: Sequence[str], *, disabled: bool) -> str:

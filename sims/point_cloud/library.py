@@ -1,8 +1,8 @@
 """Clouds that aren't built in: those that learners bring, and those in the administrator's folder.
 
 A learner's file is known by an unguessable name as long as its session keeps it; nothing here does. An
-administrator's is known by its file's name, and read when somebody asks for it. Both are read by the child process,
-and once more when somebody says what else its columns or its unit are.
+administrator's is known by its file's name, and read when somebody asks for it. Both may be read in more than one way:
+what is guessed of columns and units can be chosen instead.
 """
 
 from __future__ import annotations
@@ -14,39 +14,47 @@ import time
 from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, NamedTuple
+from pathlib import Path, PurePosixPath
+from typing import Any
 from weakref import WeakValueDictionary
 
 import numpy as np
 
-from geometry import clouds
 from sims.kit import child
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import FORMATS, CloudFileError, read
-from sims.point_cloud.files.meaning import ROLES
+from sims.point_cloud.files.meaning import roles_of
 
 UPLOAD = "upload-"
 NAME = r'^[^/\\\x00-\x1f"<>|:*?]{1,120}$'
 """Of a file, without a path."""
-LETTERS = dict(zip("xyzrgbiuvw-", ROLES, strict=True))
-"""What a column may be taken for, in one letter each: as a state and a link spell it."""
+GUESSED = ("", "auto")
+"""The columns and units of a file of which nothing was chosen."""
 NOTHING = Cloud("", np.empty((0, 3)))
 FIELDS = f"{__name__}:fields"
 KEPT = 4
-"""Clouds of the folder that are kept when nobody looks at them."""
-KEPT_OF_ONE = 2
-"""Ways in which a learner's file was read that are kept."""
+"""Clouds of the folder that are kept when nobody looks at them, and ways in which a learner's file was read."""
 AGAIN = 60.0
 """Seconds after which a file is tried again over which the child process failed; one that was refused stays so."""
 
+Choice = tuple[str, str]
+"""What columns and units are taken for: a letter for each of the first columns (`files.meaning.LETTERS`), a unit."""
+_brought: WeakValueDictionary[str, Brought] = WeakValueDictionary()
+_folder: dict[str, Path] = {}
+_readings: dict[tuple[str, Choice], _Reading] = {}
+"""Of the folder's files, the one that was asked for last at the end."""
+_lock = threading.Lock()
+_largest = 100_000_000
 
-class Asked(NamedTuple):
-    """Which file, and what its columns (`LETTERS`, for the first of them) and its unit are to be taken for."""
 
-    file: str | None
-    columns: str = ""
-    units: str = "auto"
+def fields(name: str, data: bytes, largest: int, columns: str, units: str) -> dict[str, Any]:
+    """The fields of the cloud in a file, as it is shown. Runs in the child process: see `sims.kit.child`."""
+    return vars(read(name, data, largest, roles_of(columns), units))
+
+
+def limits(size: int, largest: int) -> child.Limits:
+    """What reading a file of some bytes may take, on a server that takes `largest`: its text as numbers, and copies."""
+    return child.Limits(memory=500_000_000 + 12 * largest, seconds=20.0 + size / 2e6)
 
 
 @dataclass(eq=False)
@@ -56,8 +64,6 @@ class _Reading:
     stamp: tuple[int, int]
     found: Future[child.Values]
     cloud: Cloud | None = None
-    across: float | None = None
-    """Of the cloud, in metres."""
     failed_at: float | None = None
 
     def holds(self, stamp: tuple[int, int]) -> bool:
@@ -65,86 +71,48 @@ class _Reading:
         return self.stamp == stamp and (self.failed_at is None or time.monotonic() < self.failed_at + AGAIN)
 
     def wait(self) -> Cloud:
-        """The cloud, once it is read. Raises ChildRefusal or ChildFailed, in words for the learner."""
+        """The cloud, when it is there. Raises what `child.result` does."""
         try:
             values = child.result(self.found)
         except child.ChildFailed:
             self.failed_at = self.failed_at or time.monotonic()
             raise
         with _lock:
-            if self.cloud is None:
-                self.cloud = Cloud(**values)
-                low, high = clouds.bounds(self.cloud.points)
-                self.across = float(np.linalg.norm(high - low))
+            self.cloud = self.cloud or Cloud(**values)
         return self.cloud
 
 
-class _Readings(dict[Asked, _Reading]):
-    """Readings by what was asked for, the last one at the end; the oldest ones that are done are forgotten."""
-
-    def __init__(self, kept: int) -> None:
-        super().__init__()
-        self._kept = kept
-
-    def begun(self, asked: Asked, data: bytes | Path, stamp: tuple[int, int], largest: int, name: str) -> _Reading:
-        """The reading of what is asked for, begun if nobody has."""
-        with _lock:
-            reading = self.pop(asked, None)
-            if reading is None or not reading.holds(stamp):
-                columns = [LETTERS[letter] for letter in asked.columns]
-                allowed = limits(stamp[1], largest)
-                found = child.begin(
-                    FIELDS, name, data, limits=allowed, largest=largest, columns=columns, units=asked.units
-                )
-                reading = _Reading(stamp, found)
-            self[asked] = reading
-            done = [key for key, one in self.items() if one.found.done() and one.found.exception() is None]
-            for key in done[: -self._kept]:
-                del self[key]
-        return reading
-
-
 @dataclass(eq=False)
-class Upload:
-    """A learner's file."""
+class Brought:
+    """A learner's file, and what was made of it. Its bytes are kept: other columns may be chosen."""
 
     name: str
     data: bytes
     largest: int
-    readings: _Readings = field(default_factory=lambda: _Readings(KEPT_OF_ONE))
+    readings: dict[Choice, _Reading] = field(default_factory=dict)
 
-    def begun(self, asked: Asked) -> _Reading:
-        """The file, read as it is asked for."""
-        return self.readings.begun(asked, self.data, (0, len(self.data)), self.largest, self.name)
-
-
-_brought: WeakValueDictionary[str, Upload] = WeakValueDictionary()
-_folder: dict[str, Path] = {}
-_readings = _Readings(KEPT)
-_lock = threading.Lock()
-_largest = 100_000_000
-
-
-def fields(name: str, data: bytes, largest: int, columns: list[str], units: str) -> dict[str, Any]:
-    """The fields of the cloud in a file, as it is shown. Runs in the child process: see `sims.kit.child`."""
-    return vars(read(name, data, largest, columns, units))
+    def reading(self, choice: Choice) -> _Reading:
+        """The reading in that way, begun if it hasn't been; of those that were chosen, the newest few are kept."""
+        with _lock:
+            reading = self.readings.pop(choice, None)
+            if reading is None or not reading.holds((0, 0)):
+                reading = _Reading((0, 0), _asked(self.name, self.data, len(self.data), self.largest, choice))
+            self.readings[choice] = reading
+            for old in [one for one in self.readings if one != GUESSED][:-KEPT]:
+                del self.readings[old]
+        return reading
 
 
-def limits(size: int, largest: int) -> child.Limits:
-    """What reading a file of some bytes may take, on a server that takes `largest`: its text as numbers, and copies."""
-    return child.Limits(memory=500_000_000 + 12 * largest, seconds=20.0 + size / 2e6)
-
-
-def bring(name: str, data: bytes, largest: int) -> tuple[Upload, Mapping[str, Any]]:
-    """Read a learner's file; return it, to be kept, and the changes of the state that show it.
+def bring(name: str, data: bytes, largest: int) -> tuple[Brought, Mapping[str, Any]]:
+    """Make a cloud of a learner's file; return what is to be kept, and the changes of the state that show it.
 
     Raises ChildRefusal or ChildFailed, in words for the learner.
     """
-    upload = Upload(name, data, largest)
+    brought = Brought(PurePosixPath(name.replace("\\", "/")).name[-80:], data, largest)
+    brought.reading(GUESSED).wait()
     known_as = UPLOAD + secrets.token_urlsafe(12)
-    upload.name = upload.begun(Asked(known_as)).wait().name
-    _brought[known_as] = upload
-    return upload, {"dataset": "file", "file": known_as}
+    _brought[known_as] = brought
+    return brought, {"dataset": "file", "file": known_as}
 
 
 def offer(folder: Path, largest: int) -> None:
@@ -166,54 +134,59 @@ def offered(file: str | None) -> dict[str | None, str]:
     return offers
 
 
-def find(asked: Asked) -> Cloud:
-    """The cloud that is asked for; `NOTHING` if there is none, or it can't be read so."""
-    return _look_up(asked)[0]
+def find(file: str | None, choice: Choice = GUESSED) -> Cloud:
+    """The cloud of that name, read as chosen; `NOTHING` if there is none, or it can't be read."""
+    return _found(file, choice)[0]
 
 
-def trouble(asked: Asked) -> str:
-    """In words, why there is no cloud that is asked for; empty if there is one."""
-    return _look_up(asked)[1]
+def known(file: str | None, choice: Choice = GUESSED) -> Cloud:
+    """The same as far as somebody has read it already: without waiting, and `NOTHING` if nobody has."""
+    brought = _brought.get(file or "")
+    reading = brought.readings.get(choice) if brought else _readings.get((file or "", choice))
+    return (reading and reading.cloud) or NOTHING
 
 
-def across(asked: Asked) -> float | None:
-    """How large a cloud is, in metres, as soon as somebody has read it."""
-    reading = _done(asked)
-    return None if reading is None else reading.across
+def trouble(file: str | None, choice: Choice = GUESSED) -> str:
+    """In words, why there is no cloud of that name; empty if there is one."""
+    return _found(file, choice)[1]
 
 
-def roles(asked: Asked) -> tuple[str, ...]:
-    """What the columns of a file are taken for, as soon as somebody has read it."""
-    reading = _done(asked)
-    return () if reading is None or reading.cloud is None else tuple(reading.cloud.roles)
-
-
-def _done(asked: Asked) -> _Reading | None:
-    upload = _brought.get(asked.file or "")
-    return (_readings if upload is None else upload.readings).get(asked)
-
-
-def _look_up(asked: Asked) -> tuple[Cloud, str]:
-    file = asked.file
+def _found(file: str | None, choice: Choice) -> tuple[Cloud, str]:
     if not file:
         return NOTHING, "No file yet: bring your own, or choose one."
-    upload = _brought.get(file)
-    if upload is None and file not in _folder:
-        gone = "This file is gone: the server keeps it only while its sim is open. Bring it again."
-        return NOTHING, gone if file.startswith(UPLOAD) else f"There is no file named “{file}” here."
-    name = file if upload is None else upload.name
+    brought = _brought.get(file)
+    if brought is None and file not in _folder:
+        if file.startswith(UPLOAD):
+            return NOTHING, "This file is gone: the server keeps it only while its sim is open. Bring it again."
+        return NOTHING, f"There is no file named “{file}” here."
+    name = brought.name if brought else file
     try:
-        return (_from_folder(asked) if upload is None else upload.begun(asked)).wait(), ""
+        return (brought.reading(choice) if brought else _from_folder(file, choice)).wait(), ""
     except OSError:
         return NOTHING, f"“{name}” can't be read."
     except ValueError as error:
-        return NOTHING, f"“{name}” can't be read{' so' if asked.columns else ''}. {error}"
+        return NOTHING, f"“{name}” can't be read{' so' if choice != GUESSED else ''}. {error}"
 
 
-def _from_folder(asked: Asked) -> _Reading:
-    """The reading of a file of the folder as it is now."""
-    path = _folder[str(asked.file)]
+def _from_folder(file: str, choice: Choice) -> _Reading:
+    """The reading of a file as it is now, begun if nobody has; the oldest ones that are done are forgotten."""
+    path = _folder[file]
     status = path.stat()
     if status.st_size > _largest:
         raise CloudFileError(f"It is larger than {_largest / 1e6:,.0f} MB.")
-    return _readings.begun(asked, path, (status.st_mtime_ns, status.st_size), _largest, path.name)
+    stamp = status.st_mtime_ns, status.st_size
+    with _lock:
+        reading = _readings.pop((file, choice), None)
+        if reading is None or not reading.holds(stamp):
+            reading = _Reading(stamp, _asked(file, path, status.st_size, _largest, choice))
+        _readings[file, choice] = reading
+        done = [key for key, one in _readings.items() if one.found.done() and one.found.exception() is None]
+        for key in done[:-KEPT]:
+            del _readings[key]
+    return reading
+
+
+def _asked(name: str, data: bytes | Path, size: int, largest: int, choice: Choice) -> Future[child.Values]:
+    columns, units = choice
+    allowed = limits(size, largest)
+    return child.begin(FIELDS, name, data, limits=allowed, largest=largest, columns=columns, units=units)

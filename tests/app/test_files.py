@@ -6,7 +6,7 @@ import asyncio
 import os
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -23,12 +23,11 @@ from sims.kit import child
 from sims.point_cloud import library
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import ply_bytes, read
-from sims.point_cloud.library import Asked
 from tests.app.conftest import Local
 from tests.server import PATIENCE, wait_for
 
 HOSTILE = ("chunk_count.laz", "pointwise.laz")
-"""Over the first one lazrs would abort, over the second it would panic."""
+"""Over the first one lazrs aborts, over the second it panics."""
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
 FILE = ply_bytes(Cloud("mine", POINTS))
 
@@ -43,7 +42,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The administrator's, of clouds good and bad."""
     folder = tmp_path_factory.mktemp("clouds")
     (folder / "church.xyz").write_text("0 0 0\n1 2 3\n4 5 6\n7 8 1\n")
-    (folder / "slow.xyz").write_text("0 0 0\n1 2 3\n")
     (folder / "broken.ply").write_bytes(b"ply\nnothing")
     for name in HOSTILE:
         (folder / name).write_bytes(hostile(name))
@@ -81,6 +79,14 @@ class Desk:
     @property
     def params(self) -> Any:
         return self.session.params
+
+    def change(self, changes: Mapping[str, Any]) -> None:
+        """What a control does, on the server's loop."""
+
+        async def changed() -> None:
+            self.session.change(changes)
+
+        asyncio.run_coroutine_threadsafe(changed(), self.local._host.loop).result(PATIENCE)
 
     def solution(self) -> Any:
         wait_for(lambda: self.session._drawing is None, "the drawing to end")
@@ -145,7 +151,7 @@ def test_an_odd_file_is_shown_whatever_is_done_with_it(local: Local, name: str, 
     desk = Desk(local, "show_normals=1&color=variation")
     assert desk.bring(name, data).status_code == 200
     assert desk.solution().points_out == count
-    assert isinstance(desk.session.kept, library.Upload)
+    assert isinstance(desk.session.kept, library.Brought)
     assert not set(desk.session.kept.name) & set("/\\")
     for process in ("ground", "clusters", "outliers", "register", "surface"):
         solution = desk.session.sim.solve(desk.params.changed({"process": process, "selected": 0}))
@@ -156,9 +162,7 @@ def test_points_without_coordinates_are_counted(local: Local) -> None:
     desk = Desk(local)
     assert desk.bring("holes.xyz", b"0 0 0\nnan 1 1\n1 1 1\n2 0 1\n").status_code == 200
     assert desk.solution().points_in == 3
-    kept = library.find(desk.params.asked)
-    assert isinstance(kept, Cloud)
-    assert kept.dropped == 1
+    assert desk.solution().source.dropped == 1
 
 
 def test_a_file_that_is_too_big_is_refused_unread(local: Local) -> None:
@@ -195,8 +199,8 @@ def test_files_are_kept_as_long_as_their_session(local: Local) -> None:
     assert desk.bring("mine.ply", FILE).status_code == 200
     name = desk.params.file
     assert local.app.state.sessions.kept_bytes() >= len(FILE)
-    assert library.trouble(Asked(name)) == ""
-    assert "gone" in library.trouble(Asked("upload-never-there"))
+    assert library.trouble(name) == ""
+    assert "gone" in library.trouble("upload-never-there")
 
 
 def test_the_server_keeps_no_more_than_it_can(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -228,7 +232,7 @@ def test_slow_files_hold_up_nobody_and_are_given_up(local: Local, monkeypatch: p
 def test_the_administrators_folder_is_offered_by_name(local: Local) -> None:
     desk = Desk(local, "dataset=file&file=church.xyz")
     assert desk.solution().points_out == 4
-    assert set(desk.params.options("file")) == {None, "church.xyz", "slow.xyz", "broken.ply", *HOSTILE}
+    assert set(desk.params.options("file")) == {None, "church.xyz", "broken.ply", *HOSTILE}
     broken = Desk(local, "dataset=file&file=broken.ply").solution()
     assert broken.points_out == 0
     assert "broken.ply" in broken.trouble
@@ -287,20 +291,50 @@ def test_a_file_of_the_folder_that_was_replaced_is_read_anew(local: Local, folde
     good.write_bytes(bad)
 
 
-def test_what_a_child_failed_over_is_tried_again_after_a_while(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It may have been for want of memory, or of time; a refusal stays as it is."""
-    refused = reading_of(local, "broken.ply")["trouble"]
-    with monkeypatch.context() as hasty:
-        hasty.setattr(library, "limits", lambda *_: child.Limits(seconds=0.0))
-        slow = reading_of(local, "slow.xyz")["trouble"]
-    assert "within" in slow
-    failed = library._readings[Asked("slow.xyz")], library._readings[Asked("broken.ply")]
-    assert reading_of(local, "slow.xyz")["trouble"] == slow
+def test_what_a_child_failed_over_is_tried_again_after_a_while(
+    local: Local, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may have been for want of memory; a refusal stays as it is."""
+    (folder / "unlucky.xyz").write_text("1 2 3\n")
+    library.offer(folder, 1_000_000)
+    refused = reading_of(local, "broken.ply")["trouble"], library._readings["broken.ply", library.GUESSED]
+    with monkeypatch.context() as patch:
+        patch.setattr(library, "FIELDS", "tests.sims.strange_reader:errs")
+        assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"]
+    assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"], "for a while it isn't tried again"
     monkeypatch.setattr(library, "AGAIN", 0.0)
-    assert reading_of(local, "slow.xyz")["points_in"] == 2
-    assert reading_of(local, "broken.ply")["trouble"] == refused
-    assert library._readings[Asked("slow.xyz")] is not failed[0]
-    assert library._readings[Asked("broken.ply")] is failed[1]
+    assert reading_of(local, "unlucky.xyz")["points_in"] == 1
+    assert refused == (reading_of(local, "broken.ply")["trouble"], library._readings["broken.ply", library.GUESSED])
+    (folder / "unlucky.xyz").unlink()
+    library.offer(folder, 1_000_000)
+
+
+def test_columns_and_units_are_chosen_in_the_api_the_link_and_the_controls(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("mine.xyz", b"1 2 3 9\n4 5 6 9\n7 8 1 9\n").status_code == 200
+    assert desk.params.entries("columns") == "xyzi"
+    desk.change({"columns.0": "z"})
+    desk.change({"columns.3": "-"})
+    assert desk.params.columns == "zyx-", "the column that was z became x"
+    solution = desk.solution()
+    assert solution.source.taken_for == ["z", "y", "x", "-"]
+    np.testing.assert_allclose(solution.minimum, [1.0, 2.0, 1.0])
+    np.testing.assert_allclose(solution.maximum, [6.0, 8.0, 7.0])
+    assert "columns=zyx-" in desk.params.query()
+    desk.change({"units": "feet"})
+    np.testing.assert_allclose(desk.solution().maximum, np.array([6.0, 8.0, 7.0]) * 0.3048, atol=1e-6)
+    desk.change({"columns.0": "-"})
+    assert "no coordinate z" in desk.solution().trouble
+    assert desk.params.entries("columns") == "-yx-", "it can be mended"
+    desk.change({"columns": "", "units": "auto"})
+    assert desk.solution().points_in == 3
+
+    body = {"dataset": "file", "file": "church.xyz", "columns": "yxz", "units": "millimetres"}
+    told = local.http.post("/api/sims/point-cloud/solve", json=body).json()["solution"]
+    np.testing.assert_allclose(told["maximum"], [0.008, 0.007, 0.006], atol=1e-8)
+    assert told["source"]["unit"] == "millimetres"
+    linked = Desk(local, "dataset=file&file=church.xyz&columns=yxz&units=millimetres")
+    np.testing.assert_allclose(linked.solution().maximum, [0.008, 0.007, 0.006], atol=1e-8)
 
 
 def test_the_clouds_of_the_folder_that_nobody_looks_at_are_few(local: Local, folder: Path) -> None:
@@ -308,10 +342,10 @@ def test_the_clouds_of_the_folder_that_nobody_looks_at_are_few(local: Local, fol
     for name in names:
         (folder / name).write_text("0 0 0\n1 2 3\n")
     library.offer(folder, 1_000_000)
-    first = library.find(Asked(names[0]))
-    assert library.find(Asked(names[0])) is first, "every state has the same cloud"
+    first = library.find(names[0])
+    assert library.find(names[0]) is first, "every state has the same cloud"
     for name in names:
-        assert len(library.find(Asked(name))) == 2
+        assert len(library.find(name)) == 2
     assert len(library._readings) <= library.KEPT + 1
     for name in names:
         (folder / name).unlink()
@@ -321,8 +355,8 @@ def test_the_clouds_of_the_folder_that_nobody_looks_at_are_few(local: Local, fol
 @pytest.mark.parametrize("name", ["../secret.xyz", "..", "inside/x.xyz", "/etc/passwd", "..\\secret.xyz"])
 def test_no_name_leads_out_of_the_folder(local: Local, name: str) -> None:
     answer = local.http.get("/sims/point-cloud/embed", params={"dataset": "file", "file": name})
-    assert answer.status_code in (200, 422)
-    assert not len(library.find(Asked(name)))
+    assert answer.status_code in (307, 422)
+    assert not len(library.find(name))
     assert "secret" not in library.offered(name).values()
 
 

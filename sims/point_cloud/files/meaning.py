@@ -16,6 +16,8 @@ ROLES = {
     "nx": "Normal x", "ny": "Normal y", "nz": "Normal z", IGNORED: "Not used",
 }  # fmt: skip
 """What a column may be taken for, and how that is shown."""
+LETTERS = {"r": "red", "g": "green", "b": "blue", "i": "intensity", "u": "nx", "v": "ny", "w": "nz"}
+"""How some of them are spelled in a choice of columns; the others are letters already."""
 COLORS = ("red", "green", "blue")
 NORMALS = ("nx", "ny", "nz")
 _NAMES = {
@@ -37,6 +39,17 @@ _UNIT = re.compile(r"[\[(].*?[\])]|_(?:m|mm|cm|ft|deg)$")
 _ROW_NUMBERS = {"", "index", "id", "no", "nr", "number", "point", "point_id", "pointid", "fid", "unnamed_0"}
 _TRIAL = 20_000
 """Points whose values are looked at."""
+
+
+def roles_of(letters: str) -> tuple[str, ...]:
+    """What a choice of columns, one letter for each, takes them for."""
+    return tuple(LETTERS.get(letter, letter) for letter in letters)
+
+
+def letters_of(roles: Sequence[str]) -> str:
+    """The same as letters."""
+    letters = {role: letter for letter, role in LETTERS.items()}
+    return "".join(letters.get(role, role) for role in roles)
 
 
 def named_roles(names: Sequence[str]) -> list[str]:
@@ -109,7 +122,8 @@ def _by_values(table: Table) -> list[str]:
     """Of columns without names: x, y and z come first, but for row numbers; then what their values look like."""
     values = [_some(v) for v in table.values]
     numbers = [k for k, v in enumerate(values) if v is not None]
-    first = 1 if len(numbers) > 3 and _counts(values[numbers[0]], _stride(len(table))) else 0
+    # six are likelier coordinates and colours, or normals, of which x is evenly spaced
+    first = 1 if len(numbers) > 3 and len(numbers) != 6 and _counts(values[numbers[0]], _every(len(table))) else 0
     roles = [IGNORED] * len(values)
     for axis, k in zip("xyz", numbers[first:], strict=False):
         roles[k] = axis
@@ -121,18 +135,18 @@ def _by_values(table: Table) -> list[str]:
 
 def _some(values: Values | None) -> Array | None:
     """Values of so many points, evenly over the file, that show what they are."""
-    return None if values is None else values[:: _stride(len(values))].astype(np.float64)
+    return None if values is None else values[:: _every(len(values))].astype(np.float64)
 
 
-def _stride(count: int) -> int:
+def _every(count: int) -> int:
     return max(-(-count // _TRIAL), 1)
 
 
-def _counts(values: Array | None, stride: int) -> bool:
-    """Row numbers, from 0 or 1."""
-    return (
-        values is not None and len(values) >= 3 and values[0] in (0.0, 1.0) and bool((np.diff(values) == stride).all())
-    )
+def _counts(values: Array | None, every: int) -> bool:
+    """Row numbers, of lines that are evenly picked."""
+    if values is None or len(values) < 3 or values[0] not in (0.0, 1.0):
+        return False
+    return bool((np.diff(values) == every).all())
 
 
 def _attributes(values: Sequence[Array | None]) -> Iterator[str]:

@@ -33,7 +33,7 @@ def strays(points: Array) -> npt.NDArray[np.bool_]:
     first = max(len(nearer) - max(int(STRAYS * len(nearer)), 1), 1)
     jumps = np.flatnonzero((nearer[first:] > GAP * nearer[first - 1 : -1]) & (nearer[first - 1 : -1] > 0.0))
     reach = float(nearer[first + jumps[0] - 1] if len(jumps) else nearer[-1])
-    far = distance > reach
+    far: npt.NDArray[np.bool_] = distance > reach
     if some is not points and not (distance[zero] > GAP * reach).all():
         far &= ~zero
     return np.asarray(far)

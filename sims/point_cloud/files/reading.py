@@ -119,7 +119,8 @@ def _values(table: Table, by_role: dict[str, Any], rows: Any) -> tuple[dict[str,
         intensity, span = intensity_of(by_role["intensity"])
         if not np.isnan(intensity[rows]).all():
             values |= {"intensity": intensity[rows], "intensity_span": span}
-            notes.append(f"Intensities 0 to 1 stand for {span[0]:,.6g} to {span[1]:,.6g} in the file.")
+            low, high = (f"{value:,.6g}".replace("-", "−") for value in span)
+            notes.append(f"Intensities 0 to 1 stand for {low} to {high} in the file.")
     if set(NORMALS) <= set(by_role):
         normals = normals_of([by_role[axis][rows] for axis in NORMALS])
         if normals is None:
