@@ -50,7 +50,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
 
     app = FastAPI(
         title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan,
-        docs_url=None, redoc_url=None,
+        docs_url=None, redoc_url=None, redirect_slashes=False,
     )  # fmt: skip
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
@@ -134,7 +134,12 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         given = request.query_params.multi_items()
         params = links.read(sim, given)
         if request.method != "HEAD":  # nobody is there to use a session
-            params = _opened(sim, room, params, changes=bool(links.parts(given).params)).params
+            try:
+                params = _opened(sim, room, params, changes=bool(links.parts(given).params)).params
+            except GeometryError as error:  # of what no parameter's bounds exclude
+                wrong = Complaint(error.argument, clipped(error.received), error.allowed)
+                good = {name: text for name, text in params.query_items().items() if name != error.argument}
+                raise BadParams([wrong], good) from None
         return pages.viewer(request, sim, params, largest, room, key)
 
     def _opened(sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
@@ -144,8 +149,6 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         except Full:
             words = "All places on this server are taken; try again in a minute."
             raise HTTPException(503, words, {"retry-after": str(FULL)}) from None
-        except GeometryError as error:  # of what no parameter's bounds exclude
-            raise BadParams([Complaint(error.argument, clipped(str(error.received)), error.allowed)], {}) from None
         if known and changes:
             session.change(params.model_dump(), live=False)
         return session
@@ -169,13 +172,20 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         headers = {**FOR_EVER, "vary": "accept-encoding", "content-encoding": "gzip"}
         return Response(zipped, media_type=kind, headers=headers)
 
+    # Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.
     @page(app, "/sims/{slug}/s/{room}/{key}")
     @page(app, "/sims/{slug}/s/{room}")
-    async def slash(request: Request) -> Response:
-        query = f"?{request.url.query}" if request.url.query else ""
-        return RedirectResponse(
-            f"{pages.base(request)}{request.scope['path'].removeprefix(request.scope.get('root_path', ''))}/{query}"
-        )
+    async def with_slash(request: Request) -> Response:
+        return redirect(request, request.scope["path"] + "/")
+
+    @page(app, "/sims/{slug}/")
+    @page(app, "/sims/{slug}/embed/")
+    @page(app, "/docs/")
+    async def without_slash(request: Request) -> Response:
+        return redirect(request, request.scope["path"].rstrip("/"))
+
+    def redirect(request: Request, path: str) -> Response:
+        return RedirectResponse(f"{path}?{request.url.query}" if request.url.query else path)
 
 
 def _add_sockets(app: FastAPI, bridge: Bridge) -> None:

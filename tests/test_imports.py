@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import ast
 import functools
-import re
 import sys
-import tomllib
 from collections.abc import Iterator
-from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -164,14 +161,3 @@ def test_internals_of_viser_are_recognised(module: str, internal: bool) -> None:
 def test_private_attributes_of_others_are_recognised() -> None:
     tree = ast.parse("node._impl\nself._mine\nother._mine\nrow._asdict()\nx.__dict__\nviser._client.f")
     assert list(foreign_private_attributes(tree, {"_mine"})) == [(1, "_impl"), (6, "_client")]
-
-
-def test_what_the_application_imports_is_declared_for_it() -> None:
-    """Not only for its tests, which would hide that it is missing."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    declared = {re.split(r"[^\w-]", requirement)[0].lower() for requirement in project["dependencies"]}
-    distributions = packages_distributions()
-    tops = {module.split(".")[0] for path in sources(*PACKAGES) for _, module in imports_of(path)}
-    foreign = tops - {*sys.stdlib_module_names, *PACKAGES, "pydantic_core"}  # which pydantic chooses to the digit
-    missing = {top for top in foreign if not declared & {name.lower().replace("_", "-") for name in distributions[top]}}
-    assert not missing, f"pyproject.toml's dependencies must name what brings {sorted(missing)}"

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
 
 from app.links import TRACKING
-from sims import SIMS
+from geometry import GeometryError
+from sims import SIMS, by_slug
 from tests.app.conftest import Local
 from tests.app.test_security import page_data
 
@@ -118,3 +120,31 @@ def test_a_full_server_says_when_to_come_again() -> None:
         full = local.http.get("/sims/camera/embed")
         assert full.status_code == 503
         assert int(full.headers["retry-after"]) > 0
+
+
+@pytest.mark.parametrize("argument", ["yaw", "matrix"])
+def test_parameters_for_which_no_geometry_exists_get_a_page(local: Local, argument: str) -> None:
+    def solve(params: Any) -> Any:
+        raise GeometryError(argument, "<b>45", "something else")
+
+    sim = by_slug("euler-angles")
+    assert sim is not None
+    rooms = local.sessions
+    before = sim.solve
+    object.__setattr__(sim, "solve", solve)
+    try:
+        answer = local.http.get("/sims/euler-angles/embed?yaw=45&pitch=5")
+    finally:
+        object.__setattr__(sim, "solve", before)
+    assert answer.status_code == 422
+    assert "something else" in answer.text
+    assert "<b>45" not in answer.text
+    assert ("?pitch=5" in answer.text) == (argument == "yaw")
+    assert local.sessions == rooms
+
+
+@pytest.mark.parametrize("path", ["/sims/camera/", "/sims/camera/embed/", "/docs/"])
+def test_a_slash_too_many_leads_on_without_naming_a_host(http: httpx.Client, path: str) -> None:
+    answer = http.get(f"{path}?fx=700", follow_redirects=False)
+    assert answer.status_code == 307
+    assert answer.headers["location"] == f"{path.rstrip('/')}?fx=700"
