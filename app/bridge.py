@@ -98,6 +98,8 @@ class View(msgspec.Struct, tag="view", tag_field="type", forbid_unknown_fields=T
     """The page looks from another place: viewpoint and looked-at place, x, y, z each."""
 
     view: Annotated[list[Number], msgspec.Meta(min_length=6, max_length=6)]
+    fit: bool = False
+    """As it fits the sim's first view; a scene that has found another one since fits that."""
 
 
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
@@ -318,7 +320,7 @@ class Bridge:
         commands = Commands(session, answer)
         if isinstance(message, View):  # of this page alone
             if visit.viewer is not None:
-                commands.attempt(visit.viewer.look_from, message.view)
+                commands.attempt(visit.viewer.look_from, message.view, message.fit)
             return
         if visit.watching and isinstance(message, Point):  # for their own eyes
             if visit.viewer is not None:

@@ -94,8 +94,11 @@
   const begin = () => {
     if (!innerWidth || !innerHeight) return;
     removeEventListener("resize", begin);
+    clearInterval(looking);
     boot();
   };
+  // A page that isn't painted, as one behind others, is told of no resize.
+  const looking = setInterval(begin, 200);
   addEventListener("resize", begin);
   begin();
 })();

@@ -612,11 +612,9 @@ addEventListener("message", (event) => {
   else if (subject === "lti.capabilities.response") {
     heightTo.canvas = event.data.supported_messages?.some((message) => message.subject === "lti.frameResize");
     tellHeight();
-  } else if (context === "h5p" && action === "hello") {
+  } else if (context === "h5p" && ["hello", "resize"].includes(action)) {
     heightTo.h5p = true;
     tellHeight();
-  } else if (context === "h5p" && action === "resizePrepared") {
-    postRaw({ context: "h5p", action: "resize", scrollHeight: wantedHeight() });
   }
 });
 
@@ -656,7 +654,8 @@ function tellHeight() {
   told = height;
   post({ type: "sim3:height", height });
   if (heightTo.canvas) postRaw({ subject: "lti.frameResize", height });
-  if (heightTo.h5p) postRaw({ context: "h5p", action: "prepareResize", scrollHeight: height, clientHeight: innerHeight });
+  // H5P's own content asks first for a frame of no height, to measure itself: a scene would be drawn anew for that.
+  if (heightTo.h5p) postRaw({ context: "h5p", action: "resize", scrollHeight: height, clientHeight: innerHeight });
 }
 
 // --- Viewpoint: worked out anew when the page's size has left it, but never against one that somebody chose ---------
@@ -677,7 +676,7 @@ addEventListener("resize", () => {
     const view = sim.fit();
     if (chosen || Math.hypot(...view.map((v, i) => v - looked[i])) < 0.02 * sim.radius) return;
     looked = view;
-    send({ type: "view", view });
+    send({ type: "view", view, fit: true });
   }, 150);
 });
 

@@ -242,6 +242,8 @@ class Stage:
         self._width = width
         """Pixels that panels leave to the scene, once they are there."""
         self._phone = phone
+        self.looked: tuple[Vector, Vector, float] | None = None
+        """What `look` was told last."""
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
@@ -273,6 +275,7 @@ class Stage:
 
     def look(self, position: Vector, look_at: Vector, radius: float) -> None:
         """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
+        self.looked = position, look_at, radius
         camera = self.client.camera
         seen = SHEET if self._phone else 1.0  # of the height; boot.js does the same for the first view
         height = camera.image_height or 1  # a frame that is hidden again has none

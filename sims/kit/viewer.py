@@ -170,8 +170,9 @@ class Viewer:
             self._dock()
         # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls, and
         # all of them where the first control would else be out of sight
-        held = any(not name.startswith("/") for name in sim.handles) and not look.low
-        self._panes = self._add_panes() if held or not look.phone else None
+        held = any(not name.startswith("/") for name in sim.handles)
+        first = not (look.phone or look.narrow) or (not look.low and (held or not look.phone))
+        self._panes = self._add_panes() if first else None
         self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
@@ -183,9 +184,8 @@ class Viewer:
         if look.controls:
             self._readouts = self._add_readouts()
         width = look.width - self._docked()
-        self.scene = sim.scene(
-            Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
-        )
+        self._stage = Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
+        self.scene = sim.scene(self._stage)
         light = getattr(self.scene, "point", None)
         self._light: Callable[[str], None] | None = light if callable(light) else None  # it may be a node of that name
         self._lit = ""
@@ -228,8 +228,16 @@ class Viewer:
                 set_property(self._panes, "content", pane.render(panes, self._style))
         self.client.flush()
 
-    def look_from(self, view: Sequence[float]) -> None:
-        """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError."""
+    def look_from(self, view: Sequence[float], fit: bool = False) -> None:
+        """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError.
+
+        `fit`: the page has another size, and the view is what then fits the sim's first one; where the scene has
+        chosen another one since, that is fitted anew.
+        """
+        if fit and self._stage.looked is not None:
+            self._stage.look(*self._stage.looked)
+            self.client.flush()
+            return
         viewpoint, target = np.array(view[:3]), np.array(view[3:])
         if not (np.abs(view) < FARTHEST).all() or np.linalg.norm(viewpoint - target) < 1e-6:
             allowed = f"six numbers within {FARTHEST:g} m: viewpoint x, y, z, and another place x, y, z to look at"
@@ -271,7 +279,8 @@ class Viewer:
     def _add_panes(self) -> viser.GuiHtmlHandle | None:
         if self.sim.panes is None:
             return None
-        if self.look.phone:  # viser's bottom sheet puts other panels out of sight
+        # viser's bottom sheet puts other panels out of sight, and a low page has no room for a second one
+        if self.look.phone or (self.look.narrow and self.look.low):
             with self.client.gui.add_folder("Pictures"):
                 return self.client.gui.add_html("")
         panel = self.client.gui.add_panel()

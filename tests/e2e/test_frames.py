@@ -109,7 +109,6 @@ def test_a_course_page_sets_the_page_of_a_sim_and_hears_what_it_needs(classroom:
     assert any(m.get("context") == "h5p" and m["action"] == "hello" for m in posted)
     say(learner, {"subject": "lti.capabilities.response", "supported_messages": [{"subject": "lti.frameResize"}]})
     say(learner, {"context": "h5p", "action": "hello"})
-    say(learner, {"context": "h5p", "action": "resizePrepared"})
     learner.until(lambda: said(learner, subject="lti.frameResize", height=height))
     learner.until(lambda: said(learner, context="h5p", action="resize", scrollHeight=height))
 
