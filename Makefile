@@ -7,6 +7,10 @@ export SIM3_HOST SIM3_PORT
 UV_VERSION := 0.13.9
 VENV := .venv
 BIN := $(VENV)/bin/python
+BENCH := $(VENV)/bench
+# What the benchmarks compare with, as pyproject.toml says.
+COMPARED = $(shell $(BIN) -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+	print(*(repr(r) for r in p["optional-dependencies"]["bench"]))')
 INSTALL := -m pip install --quiet --disable-pip-version-check --require-hashes
 
 # The first interpreter that runs, is new enough and can make virtual environments. PYTHON=… names another.
@@ -24,7 +28,7 @@ help:
 	@echo "make run     serve the sims at http://$(SIM3_HOST):$(SIM3_PORT)/"
 	@echo "make test    run all tests, those in a browser too (ARGS='-k name' for some)"
 	@echo "make check   lint, format, types, import direction"
-	@echo "make bench   measure speed"
+	@echo "make bench   measure speed, beside Open3D where that can be installed"
 	@echo "make shots   take screenshots"
 	@echo "make lock    choose dependency versions anew"
 	@echo "make clean   remove what the targets made"
@@ -35,6 +39,7 @@ run: $(VENV)/run.stamp
 
 test: $(VENV)/test.stamp
 	@$(BIN) -m tests.browser --ensure
+	@$(BIN) -m tests.proxies
 	@echo "Running the tests without a browser"
 	@$(BIN) -m pytest -m "not e2e" --numprocesses auto $(ARGS) || $(NONE_CHOSEN)
 	@echo "Running the tests in a browser"
@@ -47,10 +52,10 @@ check: $(VENV)/test.stamp
 	@$(BIN) -m mypy
 	@$(BIN) -m pytest --quiet tests/test_imports.py
 
-bench: $(VENV)/test.stamp
-	@$(BIN) -m tests.browser --ensure
+bench: $(BENCH)/bench.stamp
+	@$(BENCH)/bin/python -m tests.browser --ensure
 	@echo "Running the benchmarks"
-	@$(BIN) -m benchmarks $(ARGS)
+	@$(BENCH)/bin/python -m benchmarks $(ARGS)
 
 shots: $(VENV)/test.stamp
 	@$(BIN) -m tests.browser --ensure
@@ -74,6 +79,16 @@ $(VENV)/test.stamp: requirements-test.lock $(BIN)
 	@echo "Installing what the application, its tests and checks need"
 	@$(BIN) $(INSTALL) -r requirements-test.lock
 	@touch $@ $(VENV)/run.stamp
+
+# Open3D comes with packages that would break the tests, and not for every Python and machine: the benchmarks have an
+# environment of their own, and run without it too.
+$(BENCH)/bench.stamp: requirements-test.lock pyproject.toml $(BIN)
+	@echo "Making $(BENCH), with Open3D to compare with"
+	@$(BIN) -m venv --clear $(BENCH)
+	@$(BENCH)/bin/python $(INSTALL) -r requirements-test.lock
+	@$(BENCH)/bin/python -m pip install --quiet --disable-pip-version-check --only-binary :all: $(COMPARED) || \
+		echo "Open3D could not be installed (it is not there for every Python and machine): not compared with it." >&2
+	@touch $@
 
 # The tests run on the versions that are deployed: their lock is constrained by the first one.
 COMPILE = $(VENV)/lock/bin/python -m uv pip compile --quiet --universal --python-version 3.11 \

@@ -57,7 +57,7 @@ def config(settings: Settings, host: ViserHost) -> uvicorn.Config:
     return uvicorn.Config(
         create_app(settings, host), host=settings.host, port=settings.port, ws=Websocket,
         ws_max_size=LARGEST, ws_per_message_deflate=False, log_level="warning", access_log=False,
-        timeout_graceful_shutdown=2, proxy_headers=True, lifespan="on",
+        timeout_graceful_shutdown=2, proxy_headers=False, lifespan="on",
     )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app import pages
 from app.answers import RETRY, Answers, Busy, Gone
 from app.pages import sim_or_404
+from app.trouble import question
 from app.values import complaints, shown, strict
 from geometry import GeometryError
 from sims import SIMS
@@ -76,7 +77,7 @@ def read(request: Request, body: bytes, model: type[Params]) -> Params:
     except ValidationError as error:
         raise BadBody(
             *(
-                _item(item["type"], item["loc"], item["msg"], item["input"], *complaint)
+                _item(item["type"], item["loc"], item["msg"] + question(complaint), item["input"], *complaint)
                 for item, complaint in complaints(model, given, error)
             )
         ) from None
@@ -128,11 +129,13 @@ def add_api(app: FastAPI) -> Answers:
     """The addresses of the API; what works out its long answers."""
     answers = Answers()
 
+    @app.head("/api/sims", include_in_schema=False)
     @app.get("/api/sims", tags=["catalogue"])
     async def catalogue() -> list[dict[str, Any]]:
         """Every sim with its title, summary and concepts."""
         return [pages.card(sim) for sim in SIMS]
 
+    @app.head("/api/sims/{slug}", include_in_schema=False)
     @app.get("/api/sims/{slug}", tags=["catalogue"])
     async def one(slug: str) -> dict[str, Any]:
         """One sim, with its objectives and the JSON schemas of its parameters and its solution."""

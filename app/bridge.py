@@ -14,12 +14,13 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, Any
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl
 
 import msgspec
 import viser
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from app import origins
 from app.commands import Answer, Commands
 from app.inbox import Ended, Inbox, Read, Strangers
 from app.messages import GuiUpdateMessage, decoder
@@ -35,6 +36,10 @@ log = logging.getLogger("sim3")
 HELLO_WITHIN = 2.0
 SEEN_WITHIN = 30.0
 """Seconds that viser's websocket may be open before it shows something."""
+WRONG_ORIGIN = 4403
+"""Code with which a websocket is closed whose page comes from elsewhere, as far as the server can see."""
+MOST_WARNINGS = 100
+"""Different refusals that the log tells of."""
 Number = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]
 
 
@@ -48,6 +53,7 @@ class Hello(msgspec.Struct, tag="hello", tag_field="type", forbid_unknown_fields
     query: Annotated[str, msgspec.Meta(max_length=4000)]
     opened: Annotated[str, msgspec.Meta(max_length=4000)] = ""
     """The query that the page was opened with, to which a reset returns."""
+    height: int = 800
 
 
 class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fields=True):
@@ -88,13 +94,21 @@ class Cancel(msgspec.Struct, tag="cancel", tag_field="type", forbid_unknown_fiel
     """Gives up what is being worked on."""
 
 
+class View(msgspec.Struct, tag="view", tag_field="type", forbid_unknown_fields=True):
+    """The page looks from another place: viewpoint and looked-at place, x, y, z each."""
+
+    view: Annotated[list[Number], msgspec.Meta(min_length=6, max_length=6)]
+    fit: bool = False
+    """As it fits the sim's first view; a scene that has found another one since fits that."""
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state, and for its solution too."""
 
     solution: bool = False
 
 
-channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get)
+channel_decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Point | Select | Cancel | Get | View)
 
 
 @dataclass
@@ -134,19 +148,23 @@ class Link:
 class Bridge:
     """Connects browsers to sessions."""
 
-    def __init__(self, host: ViserHost, sessions: Sessions, origins: str) -> None:
+    def __init__(self, host: ViserHost, sessions: Sessions, further: str) -> None:
         self.host = host
         self.sessions = sessions
         self.refusals: Counter[str] = Counter()
         self.strangers = Strangers(self.refusals)
-        self._origins = origins.split()
+        self._further = {origins.parse(text) for text in further.split()}
+        self._warned: set[str] = set()
         self._visits: dict[str, Visit] = {}
         host.server.on_client_connect(self._on_connect)
 
     async def scene(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
         """viser's websocket: check each message and hand it on, until the page goes."""
-        if not self._same_origin(ws) or PROTOCOL not in ws.scope.get("subprotocols", ()):
-            await self._refuse(ws, "origin" if not self._same_origin(ws) else "protocol")
+        if PROTOCOL not in ws.scope.get("subprotocols", ()):
+            self.refusals["protocol"] += 1
+            await ws.close(1008)
+            return
+        if not await self._same_origin(ws, PROTOCOL):
             return
         visit = self._visit(ws, sim, room, watching)
         await ws.accept(subprotocol=PROTOCOL)
@@ -211,7 +229,7 @@ class Bridge:
             # A page whose first message is late may still bring its state.
             silent = visit.watching or not visit.hello.done()
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-            look = Look(hello.dark, hello.controls, visit.watching, hello.width)
+            look = Look(hello.dark, hello.controls, visit.watching, hello.width, hello.height)
             link.commands = Commands(session, lambda message: visit.tell(message))
             link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params)
             session.join(link.viewer)
@@ -225,8 +243,7 @@ class Bridge:
 
     async def channel(self, ws: WebSocket, sim: Sim[Any, Any], room: str, *, watching: bool) -> None:
         """The channel: JSON both ways."""
-        if not self._same_origin(ws):
-            await self._refuse(ws, "origin")
+        if not await self._same_origin(ws):
             return
         visit = self._visit(ws, sim, room, watching)
         await ws.accept()
@@ -301,6 +318,10 @@ class Bridge:
                 answer(session.state())
             return
         commands = Commands(session, answer)
+        if isinstance(message, View):  # of this page alone
+            if visit.viewer is not None:
+                commands.attempt(visit.viewer.look_from, message.view, message.fit)
+            return
         if visit.watching and isinstance(message, Point):  # for their own eyes
             if visit.viewer is not None:
                 commands.attempt(visit.viewer.point, message.name)
@@ -345,16 +366,22 @@ class Bridge:
         if not visit.sockets:
             self._visits.pop(visit.name, None)
 
-    def _same_origin(self, ws: WebSocket) -> bool:
-        """Own pages, sandboxed frames (whose origin is 'null') and programs; the key in the path is the secret."""
-        origin = ws.headers.get("origin")
-        if origin is None or origin == "null" or origin in self._origins:
-            return True
-        return urlsplit(origin).netloc == ws.headers.get("host")
+    async def _same_origin(self, ws: WebSocket, protocol: str | None = None) -> bool:
+        """Whether the page may open a websocket; if not, it is told why. The key in the path is the secret.
 
-    async def _refuse(self, ws: WebSocket, why: str) -> None:
-        self.refusals[why] += 1
-        await ws.close(1008)
+        A browser shows a page nothing of a websocket that isn't accepted, so it is, and closed with a reason.
+        """
+        wrong = origins.mismatch(ws.headers, ws.url.scheme == "wss", self._further)
+        if wrong is None:
+            return True
+        self.refusals["origin"] += 1
+        if (line := wrong.line()) not in self._warned and len(self._warned) < MOST_WARNINGS:
+            self._warned.add(line)  # once: pages try again every second
+            log.warning("a websocket was refused. %s", line)
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            await ws.accept(subprotocol=protocol)
+            await ws.close(WRONG_ORIGIN, wrong.reason())
+        return False
 
 
 def _state(sim: Sim[Any, Any], query: str) -> Params:

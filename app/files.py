@@ -27,6 +27,8 @@ ANYWHERE = {
 """A sandboxed frame has no origin; the key in the address is the secret."""
 STALL = 10.0
 """Seconds without a byte after which a file is given up."""
+LATER = 60
+"""Seconds after which there may be room for a file."""
 BUSY = "The server has as many files as it can hold; try again later."
 GONE = "There is no such session."
 
@@ -45,7 +47,8 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
 
     @app.exception_handler(Refusal)
     async def refused(request: Request, refusal: Refusal) -> Response:
-        return JSONResponse({"detail": str(refusal)}, refusal.status, headers=ANYWHERE)
+        later = {"retry-after": f"{LATER}"} if refusal.status == 503 else {}
+        return JSONResponse({"detail": str(refusal)}, refusal.status, headers={**ANYWHERE, **later})
 
     @app.options("/sims/{slug}/s/{room}/{key}/file", include_in_schema=False)
     async def may(slug: str, room: str, key: str) -> Response:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
-import math
 from typing import Any
 
 from fastapi import HTTPException, Request
@@ -16,12 +15,10 @@ from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
 from sims.kit.palette import DARK
-from sims.kit.params import Complaint, Params
+from sims.kit.params import Params
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
-OPTIONS = ("view", "controls", "theme")
-"""What every query may hold besides the sim's parameters."""
 
 templates = Jinja2Templates(ROOT / "app" / "templates")
 
@@ -54,42 +51,27 @@ def render(request: Request, template: str, status: int = 200, **context: Any) -
     return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
 
 
-def split_options(items: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], dict[str, str]]:
-    """A query's parameters, and its page options."""
-    return [i for i in items if i[0] not in OPTIONS], dict(i for i in items if i[0] in OPTIONS)
+def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: str, key: str = "") -> Response:
+    """The page of a session in a state: viser's client with our companion. Without its key it only watches.
 
-
-def bad_options(options: dict[str, str]) -> list[Complaint]:
-    """What is wrong with page options."""
-    complaints = []
-    if (theme := options.get("theme", "light")) not in ("light", "dark"):
-        complaints.append(Complaint("theme", theme[:80], "light or dark"))
-    if (controls := options.get("controls", "1")) not in ("0", "1"):
-        complaints.append(Complaint("controls", controls[:80], "1 or 0"))
-    if "view" in options and not _is_view(options["view"]):
-        complaints.append(Complaint("view", options["view"][:80], "six numbers: viewpoint x,y,z and look-at x,y,z"))
-    return complaints
-
-
-def _is_view(text: str) -> bool:
-    try:
-        values = [float(v) for v in text.split(",")]
-    except ValueError:
-        return False
-    return len(values) == 6 and all(math.isfinite(v) and abs(v) < 1e4 for v in values) and values[:3] != values[3:]
-
-
-def viewer(request: Request, sim: AnySim, params: Params, largest: int, *, watching: bool) -> Response:
-    """The page of a session in a state: viser's client with our companion."""
+    The page alone holds the key: its address bar shows where anybody gets a room of their own in the same state.
+    """
+    place = f"{base(request)}/sims/{sim.slug}"
+    path = f"{place}/s/{room}/{key}/" if key else f"{place}/s/{room}/"
+    client = f"{base(request)}/viser/{viser_client.fingerprint()}"
     view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
-        "slug": sim.slug, "title": sim.title, "watching": watching,
+        "slug": sim.slug, "title": sim.title, "watching": not key,
+        "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "files": None if sim.files is None else {"largest": largest},
         "label": {"ink": DARK.ink, "plate": DARK.page},
+        "scripts": [
+            {"src": f"{client}/loader.js", "crossOrigin": "anonymous", "async": False},
+            {"src": static(request, "sim.js"), "type": "module", "async": False},
+        ],
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
-    client = f"{base(request)}/viser/{viser_client.fingerprint()}"
     response = render(request, "viewer.html", sim=sim, data=data, client=client)
     response.headers["cache-control"] = "no-store"
     return response

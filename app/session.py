@@ -15,7 +15,6 @@ import secrets
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from contextvars import copy_context
 from typing import Any
@@ -24,7 +23,7 @@ from pydantic import ValidationError
 
 from app.motion import gliding, play
 from app.trouble import Unknown, error_message
-from app.workers import workers
+from app.workers import Solver, workers
 from sims.kit import child
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, Work, at_work
@@ -53,7 +52,7 @@ WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 class Session:
     """One running sim."""
 
-    def __init__(self, sim: Sim[Any, Any], room: str, params: Params, pool: ThreadPoolExecutor) -> None:
+    def __init__(self, sim: Sim[Any, Any], room: str, params: Params, solver: Solver) -> None:
         self.sim = sim
         self.room = room
         self.params = self.initial = self._solved = params
@@ -63,7 +62,9 @@ class Session:
         self.listeners: set[Callable[[dict[str, Any]], None]] = set()
         self.left_at = time.monotonic()
         self.version = 0
-        self._pool = pool
+        self._solver = solver
+        self._turn = asyncio.Lock()
+        """Of what is worked out for this session: one thing at a time."""
         self._work: Work | None = None
         """What the pool does for this session."""
         self._drawn_at = 0.0
@@ -131,9 +132,10 @@ class Session:
         try:
             while self._sought is not None:
                 (handle, place), self._sought = self._sought, None
-                work = asyncio.get_running_loop().run_in_executor(self._pool, handle, self.params, place)
                 try:
-                    self.change(await work)
+                    async with self._turn:
+                        changes = await self._solver.run(handle, self.params, place)
+                    self.change(changes)
                 except Exception as error:
                     self._tell(error_message(self.sim, error))
         finally:
@@ -272,7 +274,8 @@ class Session:
         context = copy_context()
         context.run(at_work.set, work)
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._pool, context.run, self.sim.solve, params)
+            async with self._turn:
+                found = await self._solver.run(context.run, self.sim.solve, params)
         finally:
             self._work = None
         if work.cancelled:
@@ -369,7 +372,7 @@ class Sessions:
     def __init__(self, limit: int) -> None:
         self._limit = limit
         self._by_room: dict[tuple[str, str], Session] = {}
-        self._pool = workers("solve", 2)
+        self._solver = Solver()
         self.counts: Counter[str] = Counter()
         self.aside = workers("aside", 1)
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
@@ -400,7 +403,7 @@ class Sessions:
             self.sweep()
             if len(self._by_room) >= self._limit:
                 self._drop_one()
-            session = self._by_room[sim.slug, room] = Session(sim, room, params, self._pool)
+            session = self._by_room[sim.slug, room] = Session(sim, room, params, self._solver)
             session.waiting = True
             self.counts["opened"] += 1
             if sim.ahead and sim.slug not in self._begun and session._drawing is not None:
@@ -436,7 +439,7 @@ class Sessions:
         child.stop()
         self.aside.shutdown(wait=False, cancel_futures=True)
         self._ahead.shutdown(wait=False, cancel_futures=True)
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        self._solver.close()
 
 
 def new_key() -> str:

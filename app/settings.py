@@ -8,6 +8,8 @@ from pathlib import Path
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from app import origins
+
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -19,11 +21,15 @@ class Settings(BaseSettings):
     host: str = Field("127.0.0.1", description="address to listen on")
     port: int = Field(8000, ge=0, le=65535, description="port to listen on")
     root_path: str = Field("", description="path prefix behind a proxy, as in /sim3")
-    frame_ancestors: str = Field("*", description="sites that may embed the sims, as in a CSP frame-ancestors list")
+    frame_ancestors: str = Field("*", description="sites that may embed the sims beside our own pages, as in CSP")
     cloud_dir: Path | None = Field(None, description="folder whose files sims that take files offer to everybody")
     max_upload: int = Field(100, ge=1, le=2000, description="megabytes that a file of a learner may have")
     max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
     origins: str = Field("", description="further origins, separated by spaces, whose pages may open a websocket")
+    forwarded_allow_ips: str = Field(
+        "127.0.0.1", validation_alias="FORWARDED_ALLOW_IPS",
+        description="addresses of proxies, separated by commas, whose X-Forwarded-… headers are believed; * is any",
+    )  # fmt: skip
 
     @field_validator("root_path")
     @classmethod
@@ -46,6 +52,23 @@ class Settings(BaseSettings):
         if any(c in value for c in ";,\r\n"):
             raise ValueError("must be a list separated by spaces, without semicolons, commas or line breaks")
         return value
+
+    @field_validator("origins")
+    @classmethod
+    def _are_origins(cls, value: str) -> str:
+        for text in value.split():
+            try:
+                origins.parse(text)
+            except ValueError:
+                raise ValueError(f"{text[:80]!r} is no origin such as https://school.example, without a path") from None
+        return value
+
+    @field_validator("frame_ancestors")
+    @classmethod
+    def _with_our_own(cls, value: str) -> str:
+        """Our lesson pages have the sims in frames too."""
+        sources = [source for source in value.split() if source.lower() not in ("'self'", "'none'")]
+        return value if "*" in sources else " ".join(["'self'", *sources])
 
 
 def load() -> Settings:

@@ -33,15 +33,20 @@ def error_message(sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any]
     if isinstance(error, ValidationError):
         return refused("", *(complaint for _, complaint in complaints(sim.params, given or {}, error)))
     if isinstance(error, GeometryError):
-        known = error.argument in sim.params.model_fields
+        known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
     place = traceback.extract_tb(error.__traceback__)[-1]
     log.error("%s can't go on from here: %r in %s, line %s", sim.slug, error, place.filename, place.lineno)
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
 
 
+def question(complaint: Complaint) -> str:
+    """Asks whether something else was meant, where that may be."""
+    return f" (did you mean {complaint.meant}?)" if complaint.meant else ""
+
+
 def refused(words: str, *found: Complaint) -> dict[str, Any]:
     """An error message; without words of its own it says what is wrong with each parameter."""
     fields = [{"parameter": name, "received": received, "allowed": allowed} for name, received, allowed in found]
-    said = words or "; ".join(f"{name}: got {received}, allowed: {allowed}" for name, received, allowed in found)
+    said = words or "; ".join(f"{c[0]}: got {c[1]}{question(c)}, allowed: {c[2]}" for c in found)
     return {"type": "error", "message": clipped(said, 400), "errors": fields[:20]}

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from sims.kit.params import Complaint, Params, allowed_values, clipped, disagreeing, extra
+from sims.kit.params import Complaint, Params, allowed_values, choices, clipped, disagreeing, extra, meant
 
 P = TypeVar("P", bound=Params)
 LARGEST_WHOLE = 2**53
@@ -42,7 +42,15 @@ def complaints(
     """What is wrong: each of pydantic's items, with the parameters that it is about."""
     for item in error.errors(include_url=False):
         for name, allowed in _named(model, item):
-            yield item, Complaint(clipped(name), shown(_received(name, given, item["input"])), allowed)
+            received = _received(name, given, item["input"])
+            yield item, Complaint(clipped(name), shown(received), allowed, _meant(model, name, received))
+
+
+def _meant(model: type[Params], name: str, received: Any) -> str:
+    field = model.model_fields.get(name)
+    if field is None:
+        return meant(name, model.model_fields)
+    return meant(received, choices(field)) if isinstance(received, str) else ""
 
 
 def _received(name: str, given: Mapping[str, Any], value: Any) -> Any:

@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
-from urllib.parse import urlencode
 
-import fastapi_offline  # carries Swagger UI, so that /docs needs no other host
 from fastapi import FastAPI, HTTPException, Request, WebSocket
-from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import GZipMiddleware
 
-from app import pages
+from app import links, pages
 from app.api import OpenApi, add_api, in_api
 from app.bridge import Bridge
+from app.docs import described
 from app.files import ADDRESS, add_files
 from app.pages import sim_or_404
+from app.proxies import Forwarded, Prefix
 from app.security import Headers, SmallBodies
-from app.session import Full, Sessions, is_room, new_key, room_of
+from app.session import Full, Session, Sessions, is_room, new_key, room_of
 from app.settings import ROOT, Settings
+from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import viser_client
-from sims.kit.params import BadParams, Params
+from sims.kit.params import BadParams, Complaint, Params, clipped
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import ViserHost
 
@@ -51,15 +50,15 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
 
     app = FastAPI(
         title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan,
-        docs_url=None, redoc_url=None,
+        docs_url=None, redoc_url=None, redirect_slashes=False,
     )  # fmt: skip
-    # uvicorn's own setting would put the prefix before every path, though not every proxy takes it away.
-    app.root_path = settings.root_path
     app.state.sessions, app.state.bridge = sessions, bridge
     app.add_middleware(GZipMiddleware, minimum_size=2000, compresslevel=6)
     app.add_middleware(SmallBodies, files=ADDRESS)
     app.add_middleware(OpenApi)
     app.add_middleware(Headers, frame_ancestors=settings.frame_ancestors)
+    app.add_middleware(Prefix, prefix=settings.root_path, routes=app.routes)
+    app.add_middleware(Forwarded, trusted_hosts=settings.forwarded_allow_ips)
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions, largest)
@@ -67,20 +66,11 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 
-    app.mount("/swagger", StaticFiles(directory=Path(fastapi_offline.__file__).parent / "static"), name="swagger")
-
-    @app.get("/docs", response_class=HTMLResponse, include_in_schema=False)
+    @page(app, "/docs")
     async def docs(request: Request) -> Response:
-        here = pages.base(request)
-        return get_swagger_ui_html(
-            openapi_url=f"{here}/openapi.json",
-            title="Sim3 API",
-            swagger_js_url=f"{here}/swagger/swagger-ui-bundle.js",
-            swagger_css_url=f"{here}/swagger/swagger-ui.css",
-            swagger_favicon_url=pages.static(request, "icons/sim3.svg"),
-        )
+        return pages.render(request, "docs.html", described=described())
 
-    @app.get("/healthz", include_in_schema=False)
+    @app.api_route("/healthz", methods=["GET", "HEAD"], include_in_schema=False)
     async def healthz() -> dict[str, Any]:
         return {"status": "ok", "sims": len(SIMS), "sessions": len(sessions)}
 
@@ -100,63 +90,78 @@ class Static(StaticFiles):
         return response
 
 
-def _params(sim: AnySim, request: Request) -> Params:
-    """Parameters of a link; page options are checked too. Raises BadParams."""
-    items, options = pages.split_options(request.query_params.multi_items())
-    wrong = pages.bad_options(options)
-    kept = {name: text for name, text in options.items() if name not in {w[0] for w in wrong}}
-    try:
-        params: Params = sim.params.from_query(items)
-    except BadParams as error:
-        raise BadParams([*error.complaints, *wrong], {**error.good, **kept}) from None
-    if wrong:
-        raise BadParams(wrong, {**dict(items), **kept})
-    return params
+def page(app: FastAPI, path: str) -> Callable[[Any], Any]:
+    """Registers who makes a page; HEAD is answered as GET is, but for the body."""
+    return app.api_route(path, methods=["GET", "HEAD"], response_class=HTMLResponse, include_in_schema=False)
+
+
+FULL = 60
+"""Seconds after which a full server may have room again."""
 
 
 def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
-    @app.get("/", response_class=HTMLResponse, include_in_schema=False)
+    @page(app, "/")
     async def launcher(request: Request) -> Response:
         return pages.render(request, "launcher.html")
 
-    @app.get("/sims/{slug}", response_class=HTMLResponse, include_in_schema=False)
+    @page(app, "/sims")
+    @page(app, "/sims/")
+    async def sims(request: Request) -> Response:
+        return RedirectResponse(f"{pages.base(request)}/")
+
+    @page(app, "/sims/{slug}")
     async def lesson(request: Request, slug: str) -> Response:
         sim = sim_or_404(slug)
-        _params(sim, request)
-        return pages.render(request, "sim.html", sim=sim, query=request.url.query)
+        given = request.query_params.multi_items()
+        links.read(sim, given)
+        return pages.render(request, "sim.html", sim=sim, query=links.own(given))
 
-    @app.get("/sims/{slug}/embed", include_in_schema=False)
+    @page(app, "/sims/{slug}/embed")
     async def embed(request: Request, slug: str) -> Response:
         sim = sim_or_404(slug)
-        _params(sim, request)
         key = new_key()
-        query = f"?{request.url.query}" if request.url.query else ""
-        return RedirectResponse(f"{pages.base(request)}/sims/{slug}/s/{room_of(key)}/{key}/{query}", 307)
+        return joined(request, sim, room_of(key), key)
 
-    @app.get("/sims/{slug}/s/{room}/{key}/", response_class=HTMLResponse, include_in_schema=False)
+    @page(app, "/sims/{slug}/s/{room}/{key}/")
     async def controlled(request: Request, slug: str, room: str, key: str) -> Response:
         sim = sim_or_404(slug)
         if room_of(key) != room:
             raise HTTPException(404, "This link's key doesn't fit its room.")
-        params = _params(sim, request)
+        return joined(request, sim, room, key)
+
+    def joined(request: Request, sim: AnySim, room: str, key: str) -> Response:
+        """The page of a room, with control of it."""
+        given = request.query_params.multi_items()
+        params = links.read(sim, given)
+        if request.method != "HEAD":  # nobody is there to use a session
+            try:
+                params = _opened(sim, room, params, changes=bool(links.parts(given).params)).params
+            except GeometryError as error:  # of what no parameter's bounds exclude
+                wrong = Complaint(error.argument, clipped(error.received), error.allowed)
+                good = {name: text for name, text in params.query_items().items() if name != error.argument}
+                raise BadParams([wrong], good) from None
+        return pages.viewer(request, sim, params, largest, room, key)
+
+    def _opened(sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
         known = sessions.find(sim, room)
         try:
             session = sessions.open(sim, room, params)
         except Full:
-            raise HTTPException(503, "All places on this server are taken; try again in a minute.") from None
-        if known and pages.split_options(request.query_params.multi_items())[0]:
+            words = "All places on this server are taken; try again in a minute."
+            raise HTTPException(503, words, {"retry-after": str(FULL)}) from None
+        if known and changes:
             session.change(params.model_dump(), live=False)
-        return pages.viewer(request, sim, session.params, largest, watching=False)
+        return session
 
-    @app.get("/sims/{slug}/s/{room}/", response_class=HTMLResponse, include_in_schema=False)
+    @page(app, "/sims/{slug}/s/{room}/")
     async def watched(request: Request, slug: str, room: str) -> Response:
         if not is_room(room):
             raise HTTPException(404, "There is no such room.")
         sim = sim_or_404(slug)
         known = sessions.find(sim, room)
-        return pages.viewer(request, sim, known.params if known else sim.params(), largest, watching=True)
+        return pages.viewer(request, sim, known.params if known else sim.params(), largest, room)
 
-    @app.get("/viser/{fingerprint}/{name}", include_in_schema=False)
+    @app.api_route("/viser/{fingerprint}/{name}", methods=["GET", "HEAD"], include_in_schema=False)
     async def client(request: Request, fingerprint: str, name: str) -> Response:
         if fingerprint != viser_client.fingerprint() or name not in viser_client.files():
             raise HTTPException(404, "There is no such file.")
@@ -167,13 +172,20 @@ def _add_pages(app: FastAPI, sessions: Sessions, largest: int) -> None:
         headers = {**FOR_EVER, "vary": "accept-encoding", "content-encoding": "gzip"}
         return Response(zipped, media_type=kind, headers=headers)
 
-    @app.get("/sims/{slug}/s/{room}/{key}", include_in_schema=False)
-    @app.get("/sims/{slug}/s/{room}", include_in_schema=False)
-    async def slash(request: Request) -> Response:
-        query = f"?{request.url.query}" if request.url.query else ""
-        return RedirectResponse(
-            f"{pages.base(request)}{request.scope['path'].removeprefix(request.scope.get('root_path', ''))}/{query}"
-        )
+    # Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.
+    @page(app, "/sims/{slug}/s/{room}/{key}")
+    @page(app, "/sims/{slug}/s/{room}")
+    async def with_slash(request: Request) -> Response:
+        return redirect(request, request.scope["path"] + "/")
+
+    @page(app, "/sims/{slug}/")
+    @page(app, "/sims/{slug}/embed/")
+    @page(app, "/docs/")
+    async def without_slash(request: Request) -> Response:
+        return redirect(request, request.scope["path"].rstrip("/"))
+
+    def redirect(request: Request, path: str) -> Response:
+        return RedirectResponse(f"{path}?{request.url.query}" if request.url.query else path)
 
 
 def _add_sockets(app: FastAPI, bridge: Bridge) -> None:
@@ -214,12 +226,14 @@ def _add_errors(app: FastAPI) -> None:
             status=422,
             sim=sim,
             complaints=error.complaints,
-            good=urlencode(error.good, safe=",-.:"),
+            good=links.spelled(error.good),
         )
 
     @app.exception_handler(404)
     @app.exception_handler(503)
     async def missing(request: Request, error: HTTPException) -> Response:
         if in_api(request.scope):
-            return JSONResponse({"detail": error.detail}, error.status_code)
-        return pages.render(request, "missing.html", status=error.status_code, detail=error.detail)
+            return JSONResponse({"detail": error.detail}, error.status_code, error.headers)
+        response = pages.render(request, "missing.html", status=error.status_code, detail=error.detail)
+        response.headers.update(error.headers or {})
+        return response

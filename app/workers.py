@@ -2,14 +2,53 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import sys
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from typing import Any, TypeVar
 
+T = TypeVar("T")
 GIVES_WAY = 10
 """Steps of niceness."""
+AT_ONCE, MOST = 2, 8
+"""Threads that solve at once, and with those that have done so for long."""
+LONG = 1.0
+"""Seconds after which who solves no longer keeps others from it."""
+
+
+class Solver:
+    """Solves beside the event loop: a few at once, and nobody waits for those that take long."""
+
+    def __init__(self) -> None:
+        self._pool = workers("solve", MOST)
+        self._free = asyncio.Semaphore(AT_ONCE)
+
+    async def run(self, work: Callable[..., T], *given: Any) -> T:
+        """What some work makes, in its turn."""
+        await self._free.acquire()
+        loop = asyncio.get_running_loop()
+        held = True
+
+        def release() -> None:
+            nonlocal held
+            if held:
+                held = False
+                self._free.release()
+
+        waiting = loop.call_later(LONG, release)
+        try:
+            return await loop.run_in_executor(self._pool, work, *given)
+        finally:
+            waiting.cancel()
+            release()
+
+    def close(self) -> None:
+        """End it; what has begun goes on until it asks whether it is wanted."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
 
 
 def workers(name: str, most: int) -> ThreadPoolExecutor:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import http.client
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
-from urllib.parse import urlsplit
 
 from benchmarks.process import CORES, pinned
 from tests.server import camera_message, free_port, wait_for
@@ -90,7 +90,9 @@ class Sim3(Server):
     way, module = "sim3", "app"
 
     def page(self, slug: str = SLUG) -> str:
-        return urlsplit(self.get(f"/sims/{slug}/embed").headers["location"]).path
+        path = re.search(r'"path": "([^"]+)"', self.get(f"/sims/{slug}/embed").read().decode())
+        assert path is not None
+        return path[1]
 
     def sessions(self) -> int:
         """How many sessions it keeps."""

@@ -7,8 +7,8 @@ const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 const options = ["view", "controls", "theme"];
 const kept = new Query();
 for (const [name, value] of new Query(sim.search)) if (options.includes(name)) kept.append(name, value);
-const opened = stateQuery(sim.search);
-let query = opened;
+const opened = stateQuery(sim.opened);
+let query = stateQuery(sim.search);
 let socket = null;
 let retryAfter = 250;
 let state = null;
@@ -29,29 +29,33 @@ function readable(search) {
   return search.toString().replaceAll("%2C", ",");
 }
 
-function address() {
+function withState(path) {
   const search = withOptions(query);
-  return location.pathname + (search ? "?" + search : "");
+  return path + (search ? "?" + search : "");
 }
 
+// What the address must not hold stays beside it: the room, for a reload, and the state that Reset leads back to.
 function showAddress() {
-  history.replaceState(null, "", address());
+  try {
+    history.replaceState({ path: sim.path, opened }, "", withState(sim.address));
+  } catch { /* some browsers let a sandboxed frame change no more than its query */ }
 }
 
 // --- Channel -----------------------------------------------------------------------------------------------------
 
 function connect() {
-  socket = new WebSocket(`${sim.path}channel?viewer=${sim.viewer}`);
+  socket = new WebSocket(`${sim.socket}channel?viewer=${sim.viewer}`);
   socket.onopen = () => {
     retryAfter = 250;
     send({
-      type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth,
+      type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth, height: innerHeight,
       controls: kept.get("controls") !== "0", query, opened,
     });
   };
   socket.onmessage = (event) => receive(JSON.parse(event.data));
-  socket.onclose = () => {
+  socket.onclose = (event) => {
     socket = null;
+    lost(event.code === REFUSED ? event.reason : "");
     showWork({ text: "" });
     setTimeout(connect, retryAfter);
     retryAfter = Math.min(retryAfter * 2, 1500); // within the time that the server waits before it draws
@@ -64,22 +68,57 @@ function send(message) {
 
 function receive(message) {
   if (message.type === "state") {
+    found();
     state = message;
     query = message.query;
     showAddress();
     speak(message.text);
     describeScene(message.text);
     goLive();
-    post({ type: "sim3:state", params: message.params, query });
+    const { params, solution } = message;
+    post({ type: "sim3:state", params, query, ...(solution === undefined ? {} : { solution }) });
+    afterState.splice(0).forEach((then) => then());
   } else if (message.type === "point") {
     theirs = message.name;
     light();
   } else if (message.type === "error") {
     notify("⚠ " + message.message);
-    post({ type: "sim3:error", message: message.message });
+    post({ type: "sim3:error", message: message.message, errors: message.errors });
   } else if (message.type === "work") {
     showWork(message);
   }
+}
+
+// --- No connection: after a while in words, for whoever runs the server --------------------------------------------
+
+const REFUSED = 4403; // the server says what is wrong with what it saw
+const PATIENCE = 5000;
+let missing = 0;
+let why = "";
+
+function lost(reason) {
+  why = reason || why;
+  if (reason) return showTrouble();
+  missing ||= setTimeout(showTrouble, PATIENCE);
+}
+
+function found() {
+  clearTimeout(missing);
+  missing = 0;
+  why = "";
+  document.querySelector(".s3-trouble")?.remove();
+}
+
+function showTrouble() {
+  const box = document.querySelector(".s3-trouble") ?? element("section", { class: "s3-trouble", role: "alert" });
+  const words = [
+    ["h2", state ? "The connection to the server is lost" : "This sim can’t reach its server"],
+    ["p", state ? "It tries again by itself, and goes on where you are." : "It tries again by itself. If it stays like this, tell whoever runs the server:"],
+    ["p", why || (state ? "" : `The page came, but the websocket to ${new URL(sim.place).host} doesn’t open. A proxy on the way must let websockets through (Upgrade and Connection), and hand on the Host that the browser asked for.`)],
+  ];
+  if (box.textContent === words.map(([, text]) => text).join("")) return;
+  box.replaceChildren();
+  for (const [tag, text] of words) if (text) element(tag, {}, box).textContent = text;
 }
 
 // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
@@ -128,9 +167,18 @@ function showWork({ text, done, cancel }) {
   workCancel.hidden = !cancel || sim.watching;
 }
 
+// viser makes a new canvas when it connects anew, and leaves the old one for a while: the scene is what is seen.
+function sceneCanvas() {
+  const area = (canvas) => canvas.clientWidth * canvas.clientHeight;
+  return [...document.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
+}
+
 function describeScene(text) {
-  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  const canvas = sceneCanvas();
   if (!canvas) return;
+  for (const old of document.querySelectorAll("canvas[role]")) {
+    if (old !== canvas) old.removeAttribute("role"), old.removeAttribute("aria-label");
+  }
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${sim.title}, 3D scene. ${text}`);
 }
@@ -360,6 +408,7 @@ document.addEventListener("click", (event) => {
 let tidying = false;
 
 new MutationObserver(() => {
+  tellHeightSoon();
   keepFocus();
   light();
   goLive();
@@ -391,7 +440,7 @@ function goLive() {
   requestAnimationFrame(() => requestAnimationFrame(() => document.querySelector(".s3-still").remove()));
   describeScene(state.text);
   post({ type: "sim3:ready" });
-  post({ type: "sim3:height", height: document.documentElement.scrollHeight });
+  askForHeight();
 }
 
 // --- Toolbar -----------------------------------------------------------------------------------------------------
@@ -401,18 +450,13 @@ document.addEventListener("click", (event) => {
   if (kind === "share") share();
   else if (kind === "picture") savePicture();
   else if (kind === "keys") showKeys();
+  else if (kind === "download") download(`${sim.place}result/${event.target.value}`, event.target.value);
   else if (kind === "give-up") bringing.request.abort();
   else if (kind === "close") event.target.closest("dialog").close();
 });
 
-function shareLink() {
-  const path = location.pathname.replace(/\/s\/.*/, "/embed");
-  const search = withOptions(query);
-  return path + (search ? "?" + search : "");
-}
-
 async function share() {
-  const link = new URL(shareLink(), location.href).href;
+  const link = new URL(withState(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, "/embed")), location.href).href;
   try {
     // Frames of other sites may not; asking all the same would leave an error in the console.
     if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
@@ -427,12 +471,16 @@ async function share() {
 }
 
 function savePicture() {
-  const canvas = document.querySelector("canvas[data-engine]") ?? document.querySelector("canvas");
+  const canvas = sceneCanvas();
   requestAnimationFrame(() => {
-    const link = element("a", { href: canvas.toDataURL("image/png"), download: `${sim.slug}.png` });
-    link.click();
-    link.remove();
+    download(canvas.toDataURL("image/png"), `${sim.slug}.png`);
   });
+}
+
+function download(href, name) {
+  const link = element("a", { href, download: name });
+  link.click();
+  link.remove();
 }
 
 // --- Files that a learner brings: sent as they are, with how far they are; the state comes over the channel ----------
@@ -452,6 +500,8 @@ function showBringing() {
 function say(words, share = null) {
   Object.assign(bringing, { words, share });
   showBringing();
+  // A file can be dropped anywhere, also while the controls of files are folded away.
+  if (!document.querySelector(".s3-bring")?.checkVisibility()) notify(words);
 }
 
 function bring(file) {
@@ -462,7 +512,7 @@ function bring(file) {
   }
   const request = (bringing.request = new XMLHttpRequest());
   const failed = (words) => say(`⚠ “${file.name}”: ${words} Nothing has changed.`);
-  request.open("POST", `file?name=${encodeURIComponent(file.name)}`);
+  request.open("POST", `${sim.place}file?name=${encodeURIComponent(file.name)}`);
   request.upload.onprogress = (event) => say(`Sending “${file.name}”, ${size}…`, event.loaded / event.total * 0.999);
   request.upload.onload = () => say(`Reading “${file.name}”, ${size}…`, 1);
   request.onerror = () => failed("The connection broke off.");
@@ -516,12 +566,120 @@ function post(message) {
   if (embedded) window.parent.postMessage({ slug: sim.slug, ...message }, "*");
 }
 
+const afterState = []; // what waits for the next state
+
+function refuse(parameter, received, allowed) {
+  const errors = [{ parameter, received: JSON.stringify(received) ?? "nothing", allowed }];
+  post({ type: "sim3:error", message: `${parameter}: got ${errors[0].received}, allowed: ${allowed}`, errors });
+}
+
+function isView(view) {
+  return Array.isArray(view) && view.length === 6 && view.every((v) => typeof v === "number" && Math.abs(v) < 1e4)
+    && view.slice(0, 3).some((v, i) => v !== view[i + 3]);
+}
+
+// The theme and the controls are the server's work too: the page begins anew with them, in its room, once the server
+// has what else was set.
+function setPage({ theme, controls, view }) {
+  const wanted = {};
+  if (theme === "light" || theme === "dark") wanted.theme = theme;
+  else if (theme !== undefined) refuse("theme", theme, "light or dark");
+  if (typeof controls === "boolean") wanted.controls = controls ? "1" : "0";
+  else if (controls !== undefined) refuse("controls", controls, "true or false");
+  const now = { theme: sim.dark ? "dark" : "light", controls: kept.get("controls") ?? "1" };
+  const anew = Object.entries(wanted).filter(([name, value]) => value !== now[name]);
+  for (const [name, value] of anew) kept.set(name, value);
+  if (isView(view)) {
+    chosen = true;
+    kept.set("view", view.join(","));
+    send({ type: "view", view });
+  } else if (view !== undefined) refuse("view", view, "six numbers: viewpoint x, y, z and look-at x, y, z");
+  showAddress();
+  if (!anew.length) return;
+  afterState.push(() => location.reload());
+  send({ type: "get" });
+}
+
 addEventListener("message", (event) => {
   if (event.source !== window.parent || !embedded || typeof event.data !== "object" || event.data === null) return;
-  const { type, params, name } = event.data;
-  if (type === "sim3:set") send({ type: "set", params });
-  else if (type === "sim3:action") send({ type: "action", name });
-  else if (type === "sim3:get") send({ type: "get" });
+  const { type, params, name, seconds, solution, theme, controls, view, subject, context, action } = event.data;
+  const page = theme !== undefined || controls !== undefined || view !== undefined;
+  if (type === "sim3:set") {
+    if (params !== undefined || !page) send({ type: "set", params, ...(seconds === undefined ? {} : { seconds }) });
+    if (page) setPage({ theme, controls, view });
+  } else if (type === "sim3:action") send({ type: "action", name });
+  else if (type === "sim3:get") send({ type: "get", ...(solution ? { solution: true } : {}) });
+  else if (subject === "lti.capabilities.response") {
+    heightTo.canvas = event.data.supported_messages?.some((message) => message.subject === "lti.frameResize");
+    tellHeight();
+  } else if (context === "h5p" && ["hello", "resize"].includes(action)) {
+    heightTo.h5p = true;
+    tellHeight();
+  }
 });
 
+// --- How high the frame would best be: for course pages, and for Canvas and H5P, if they answer in their own words --
+
+const heightTo = { canvas: false, h5p: false };
+let told = 0;
+
+function postRaw(message) {
+  if (embedded) window.parent.postMessage(message, "*");
+}
+
+function askForHeight() {
+  postRaw({ subject: "lti.capabilities" });
+  postRaw({ context: "h5p", action: "hello" });
+  tellHeight();
+}
+
+// As high as the controls and read-outs need beside the scene, or below it on a phone, within reason.
+function wantedHeight() {
+  const content = [...document.querySelectorAll(".mantine-ScrollArea-viewport, [data-dock-region]")]
+    .map((node) => node.getBoundingClientRect().top + node.scrollHeight);
+  const [least, most] = innerWidth <= 576 ? [640, 900] : [480, 900];
+  return Math.round(Math.min(Math.max(least, ...content), most));
+}
+
+let telling = 0;
+
+function tellHeightSoon() {
+  if (!embedded || !sim.live) return;
+  clearTimeout(telling);
+  telling = setTimeout(() => Math.abs(wantedHeight() - told) > 8 && tellHeight(), 400);
+}
+
+function tellHeight() {
+  const height = wantedHeight();
+  told = height;
+  post({ type: "sim3:height", height });
+  if (heightTo.canvas) postRaw({ subject: "lti.frameResize", height });
+  // H5P's own content asks first for a frame of no height, to measure itself: a scene would be drawn anew for that.
+  if (heightTo.h5p) postRaw({ context: "h5p", action: "resize", scrollHeight: height, clientHeight: innerHeight });
+}
+
+// --- Viewpoint: worked out anew when the page's size has left it, but never against one that somebody chose ---------
+
+let chosen = kept.has("view");
+let looked = sim.fit();
+let sizing = 0;
+
+for (const kind of ["pointerdown", "wheel", "keydown"]) {
+  document.addEventListener(kind, (event) => { if (event.target.matches?.("canvas")) chosen = true; }, { capture: true, passive: true });
+}
+
+addEventListener("resize", () => {
+  clearTimeout(sizing);
+  sizing = setTimeout(() => {
+    if (!innerWidth || !innerHeight) return; // hidden again
+    tellHeightSoon();
+    const view = sim.fit();
+    if (chosen || Math.hypot(...view.map((v, i) => v - looked[i])) < 0.02 * sim.radius) return;
+    looked = view;
+    send({ type: "view", view, fit: true });
+  }, 150);
+});
+
+lost("");
+showAddress();
 connect();

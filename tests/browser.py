@@ -82,11 +82,11 @@ def launch_options() -> LaunchOptions:
 
 def ensure_browser() -> str:
     """Find a browser, or install one: Playwright's, else Debian's package when root."""
-    attempts = ([sys.executable, "-m", "playwright", "install", "chromium"],), _debian_commands()
+    attempts = ([sys.executable, "-m", "playwright", "install", "chromium"],), debian_commands("chromium")
     for commands in attempts:
         if browser := find_browser():
             return browser
-        _run_all(commands)
+        run_all(commands)
         find_browser.cache_clear()
     if browser := find_browser():
         return browser
@@ -108,17 +108,18 @@ def _starts(path: str) -> bool:
     return asked.returncode == 0
 
 
-def _debian_commands() -> tuple[list[str], ...]:
+def debian_commands(*packages: str) -> tuple[list[str], ...]:
+    """What installs packages of Debian's, where that can be done."""
     if not (_is_root() and shutil.which("apt-get")):
         return ()
-    return ["apt-get", "update"], ["apt-get", "install", "-y", "chromium"]
+    return ["apt-get", "update"], ["apt-get", "install", "-y", *packages]
 
 
-def _run_all(commands: tuple[list[str], ...]) -> None:
+def run_all(commands: tuple[list[str], ...]) -> None:
     """Run commands until one fails; what they print goes to standard error."""
     environment = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
     for command in commands:
-        print("tests.browser:", *command, file=sys.stderr, flush=True)
+        print("tests:", *command, file=sys.stderr, flush=True)
         done = subprocess.run(
             command, env=environment, stdin=subprocess.DEVNULL, stdout=sys.stderr.fileno(), check=False
         )

@@ -91,7 +91,7 @@ def opened(
 def wait_live(page: Page) -> None:
     """Wait until every sim on the page, itself or in a frame, is drawn."""
     for frame in page.frames:
-        if "/s/" in frame.url:
+        if frame.url.split("?")[0].endswith("/embed"):
             frame.wait_for_function("window.sim3?.live === true")
             frame.wait_for_selector(".s3-still", state="detached")
             frame.wait_for_selector(".mantine-Notification-root", state="detached")

@@ -9,9 +9,15 @@ from typing import Any
 import viser
 
 from sims.kit.params import Params, extra
-from sims.kit.viser_internals import set_value
+from sims.kit.viser_internals import set_property, set_value
 
 Take = Callable[[Any], None]
+
+
+def worded_entry(params: Params, name: str, k: int) -> str:
+    """Words beside the control of one entry, with the unit."""
+    unit = extra(type(params).model_fields[name]).get("unit")
+    return params.entry_label(name, k) + (f" ({unit})" if unit else "")
 
 
 class Entries:
@@ -33,7 +39,7 @@ class Entries:
             listen(handle, partial(self._taken, change, f"{name}.{k}"))
 
     def _add(self, gui: viser.GuiApi, params: Params, k: int, hints: Mapping[str, Any], shared: Any) -> Any:
-        label = params.entry_label(self.name, k) + (f" ({hints['unit']})" if hints.get("unit") else "")
+        label = worded_entry(params, self.name, k)
         start = self._shown(self._absent)
         if self._labels:
             return gui.add_dropdown(label, tuple(self._letters), initial_value=start, **shared)
@@ -47,13 +53,15 @@ class Entries:
 
     def draw(self, params: Params) -> None:
         """Show the entries of a state."""
-        values = getattr(params, self.name)
+        values = params.entries(self.name)
         for k, handle in enumerate(self._handles):
             set_value(handle, self._shown(values[k] if k < len(values) else self._absent))
 
     def reword(self, params: Params) -> None:
-        """Show as many controls as there are entries."""
-        count = len(getattr(params, self.name))
+        """Show as many controls as there are entries, and what each is called."""
+        for k, handle in enumerate(self._handles):
+            set_property(handle, "label", worded_entry(params, self.name, k))
+        count = len(params.entries(self.name))
         if count != self._count:
             self._count = count
             for k, handle in enumerate(self._handles):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any, Literal, Self, cast, get_args
 from urllib.parse import urlencode
@@ -43,6 +44,14 @@ class Params(BaseModel):
     def entry_label(self, name: str, k: int) -> str:
         """Words beside the control of the k-th entry, from 0, of a list."""
         return str(extra(type(self).model_fields[name])["entry"]).format(k + 1)
+
+    def entries(self, name: str) -> Any:
+        """The entries of a list that have a control each in this state."""
+        return getattr(self, name)
+
+    def increment(self, name: str) -> float:
+        """By how much a step of a slider changes a number in this state."""
+        return float(extra(type(self).model_fields[name])["step"])
 
     def options(self, name: str) -> Mapping[Any, str]:
         """What the dropdown of a choice or an optional number offers in this state: each value, and how it is shown."""
@@ -81,7 +90,7 @@ class Params(BaseModel):
             field, _, k = name.partition(".")
             if not k:
                 whole[name] = value
-            elif int(k) < len(entries := whole.get(field, getattr(self, field))):  # else it was taken away meanwhile
+            elif int(k) < len(entries := whole.get(field, self.entries(field))):  # else it was taken away meanwhile
                 put = value if isinstance(entries, str) else (value,)
                 whole[field] = entries[: int(k)] + put + entries[int(k) + 1 :]
         return whole
@@ -125,24 +134,38 @@ class Params(BaseModel):
     @classmethod
     def from_query(cls, items: Iterable[tuple[str, str]]) -> Self:
         """The state that a link names; raises `BadParams` with every complaint."""
-        given, complaints = {}, []
-        aliases = {str(f.alias): n for n, f in cls.model_fields.items() if f.alias}
-        for raw_name, text in items:
-            name = aliases.get(raw_name, raw_name)
+        given, complaints = dict[str, str](), list[Complaint]()
+        for name, texts in cls._by_name(items).items():
             if name not in cls.model_fields:
-                complaints.append(Complaint(raw_name[:60], clipped(text), "one of: " + ", ".join(cls.model_fields)))
-            elif len(text) > LONGEST_VALUE:
-                complaints.append(Complaint(name, clipped(text), f"at most {LONGEST_VALUE} characters"))
+                known = "one of: " + ", ".join(cls.model_fields)
+                complaints.append(Complaint(name[:60], clipped(texts[0]), known, meant(name, cls.model_fields)))
+            elif len(texts) > 1:
+                complaints.append(Complaint(name, clipped(" and ".join(texts)), "one value"))
+            elif len(texts[0]) > LONGEST_VALUE:
+                complaints.append(Complaint(name, clipped(texts[0]), f"at most {LONGEST_VALUE} characters"))
             else:
-                given[name] = text
+                given[name] = texts[0]
         state, wrong = cls._validated({name: unspell(cls.model_fields[name], text) for name, text in given.items()})
-        complaints += [Complaint(name, clipped(given.get(name, "")), allowed) for name, allowed in wrong.items()]
+        complaints += [cls._complaint(name, given.get(name, ""), allowed) for name, allowed in wrong.items()]
         if complaints or state is None:
             while wrong:  # what is left may be wrong without what went
                 given = {name: text for name, text in given.items() if name not in wrong}
                 _, wrong = cls._validated({n: unspell(cls.model_fields[n], t) for n, t in given.items()})
             raise BadParams(complaints[:MOST_COMPLAINTS], given)
         return state
+
+    @classmethod
+    def _by_name(cls, items: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+        """All values that each parameter is given, under the name that it has today."""
+        aliases = {str(f.alias): n for n, f in cls.model_fields.items() if f.alias}
+        given: dict[str, list[str]] = {}
+        for name, text in items:
+            given.setdefault(aliases.get(name, name), []).append(text)
+        return given
+
+    @classmethod
+    def _complaint(cls, name: str, text: str, allowed: str) -> Complaint:
+        return Complaint(name, clipped(text), allowed, suggestion(cls.model_fields[name], text))
 
     @classmethod
     def _validated(cls, values: Mapping[str, Any]) -> tuple[Self | None, dict[str, str]]:
@@ -153,10 +176,14 @@ class Params(BaseModel):
 
 
 class Complaint(tuple[str, str, str]):
-    """What was wrong with one parameter: its name, what was received, what is allowed."""
+    """What was wrong with one parameter: its name, what was received, what is allowed; and what may be meant."""
 
-    def __new__(cls, name: str, received: str, allowed: str) -> Complaint:
-        return super().__new__(cls, (name, received, allowed))
+    meant: str
+
+    def __new__(cls, name: str, received: str, allowed: str, meant: str = "") -> Complaint:
+        made = super().__new__(cls, (name, received, allowed))
+        made.meant = meant
+        return made
 
 
 class BadParams(ValueError):
@@ -249,11 +276,14 @@ def numbers(
 
 
 def letters(
-    default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = ""
-) -> Any:
-    """One to `most` letters, together as in `zyy`; each has a dropdown, called as `entry` says: "Joint {} axis"."""
-    hints: Any = {"group": group, "control": "letters", "labels": dict(labels), "most": most, "entry": entry}
-    pattern = f"^[{''.join(labels)}]{{1,{most}}}$"
+    default: str, *, most: int, labels: Mapping[str, str], title: str, entry: str, description: str, group: str = "",
+    fewest: int = 1,
+) -> Any:  # fmt: skip
+    """`fewest` to `most` letters, together as in `zyy`, with a dropdown each, called as in `entry`: "Joint {} axis"."""
+    hints: Any = {
+        "group": group, "control": "letters", "labels": dict(labels), "most": most, "entry": entry, "fewest": fewest,
+    }  # fmt: skip
+    pattern = f"^[{''.join(labels)}]{{{fewest},{most}}}$"
     return Field(default, pattern=pattern, title=title, description=description, json_schema_extra=hints)
 
 
@@ -392,8 +422,32 @@ def unspell(field: FieldInfo, text: str) -> Any:
     if kind == "switch":
         return {"1": True, "0": False}.get(text)
     if "low" in extra(field):
-        return tuple(text.split(",")) if text or extra(field).get("least") != 0 else ()
-    return text
+        return tuple(number_text(text).split(",")) if text or extra(field).get("least") != 0 else ()
+    return number_text(text) if extra(field).get("step") is not None or kind == "option" else text
+
+
+def number_text(text: str) -> str:
+    """A number's text with the minus sign that programs write, where it has the one that books and we do (U+2212)."""
+    return text.replace("−", "-")
+
+
+def meant(text: str, known: Iterable[str]) -> str:
+    """Which of some words a text that is none of them may mean: the same but for its letters' case, or one near."""
+    by_case = {word.casefold(): word for word in known}
+    near = get_close_matches(clipped(text).strip().casefold(), by_case, 1, NEAR)
+    return by_case[near[0]] if near else ""
+
+
+NEAR = 0.7
+"""How alike words must be, as difflib has it, for one to be meant by the other."""
+ON_OFF = {"true": "1", "yes": "1", "on": "1", "false": "0", "no": "0", "off": "0"}
+
+
+def suggestion(field: FieldInfo, text: str) -> str:
+    """What a field's text in a link may mean that isn't allowed."""
+    if extra(field).get("control") == "switch":
+        return ON_OFF.get(text.strip().lower(), "")
+    return meant(text, choices(field))
 
 
 def clipped(text: Any, length: int = 80) -> str:
@@ -412,7 +466,8 @@ def allowed_values(field: FieldInfo) -> str:
     if words := choices(field):
         return "one of: " + ", ".join(words)
     if kind == "letters":
-        return f"1 to {extra(field)['most']} letters, each one of: {', '.join(extra(field)['labels'])}"
+        hints = extra(field)
+        return f"{hints['fewest']} to {hints['most']} letters, each one of: {', '.join(hints['labels'])}"
     if "low" in extra(field):
         ranges = list(zip(*entry_bounds(field), strict=True)) or [field_bounds(field)]
         count = f"{extra(field)['least']} to {extra(field)['most']}" if "least" in extra(field) else f"{len(ranges)}"

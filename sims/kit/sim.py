@@ -89,6 +89,9 @@ class Files:
     endings: tuple[str, ...]
     read: Callable[[str, bytes, int], tuple[object, Mapping[str, Any]]]
     offer: Callable[[Path, int], None]
+    previewed: str = ""
+    """The parameter above whose controls the `preview` stands: what a file holds, or None."""
+    preview: Callable[[Any], Readout | None] = lambda _: None
 
 
 @dataclass(frozen=True)

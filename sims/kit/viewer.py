@@ -6,12 +6,15 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple, Protocol
 
+import numpy as np
 import viser
 
+from geometry import GeometryError
 from sims.kit import pane, readout
 from sims.kit.entries import Entries
 from sims.kit.palette import DARK, LIGHT
@@ -26,6 +29,10 @@ NARROW, PHONE = 900, 576
 """Pixels of a page's width below, and up to, which there is less room."""
 PICTURES = 330
 """Pixels that the panel of the pictures is wide."""
+LOW = 500
+"""Pixels of a page's height below which a bottom sheet has room for one thing."""
+FARTHEST = 1e4
+"""Metres that a viewpoint may be away."""
 OTHER = "another"
 """What a list of presets shows for a value that isn't one of them."""
 
@@ -50,7 +57,8 @@ class Look:
     controls: bool = True
     watching: bool = False
     width: int = 1280
-    """Of the page, in pixels."""
+    height: int = 800
+    """Both of the page, in pixels."""
 
     @property
     def narrow(self) -> bool:
@@ -59,6 +67,10 @@ class Look:
     @property
     def phone(self) -> bool:
         return self.width <= PHONE
+
+    @property
+    def low(self) -> bool:
+        return self.height < LOW
 
 
 @dataclass
@@ -74,6 +86,8 @@ class Control:
     """Of a dropdown: each value of the parameter, and how it is shown."""
     absent: float | None = None
     """What stands for a number that isn't there."""
+    increment: float | None = None
+    """By how much a step of a slider changes it."""
 
     def draw(self, params: Params) -> None:
         value = getattr(params, self.name)
@@ -95,6 +109,9 @@ class Control:
         if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
+        if self.increment is not None and (increment := params.increment(self.name)) != self.increment:
+            self.increment = self.handle.step = increment
+            self.handle.precision = decimals(increment)
         if (label := worded(params, self.name)) != self.label:
             self.label = self.handle.label = label
 
@@ -152,12 +169,15 @@ class Viewer:
         client.gui.set_panel_label(sim.title)
         if look.controls:
             self._dock()
-        # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls
+        # viser's bottom sheet on phones has one column: pictures in which nothing is held come after the controls, and
+        # all of them where the first control would else be out of sight
         held = any(not name.startswith("/") for name in sim.handles)
-        self._panes = self._add_panes() if held or not look.phone else None
+        first = not (look.phone or look.narrow) or (not look.low and (held or not look.phone))
+        self._panes = self._add_panes() if first else None
         self._controls: list[Control | Entries] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
+        self._preview: viser.GuiHtmlHandle | None = None
         if look.controls:
             self._add_controls(params)
         if self._panes is None:
@@ -165,9 +185,8 @@ class Viewer:
         if look.controls:
             self._readouts = self._add_readouts()
         width = look.width - self._docked()
-        self.scene = sim.scene(
-            Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
-        )
+        self._stage = Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
+        self.scene = sim.scene(self._stage)
         light = getattr(self.scene, "point", None)
         self._light: Callable[[str], None] | None = light if callable(light) else None  # it may be a node of that name
         self._lit = ""
@@ -202,9 +221,30 @@ class Viewer:
             if self._readouts is not None:
                 html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
                 set_property(self._readouts, "content", html)
+            if self._preview is not None and self.sim.files is not None:
+                preview = self.sim.files.preview(params)
+                set_property(self._preview, "content", "" if preview is None else readout.render([preview]))
             if self._panes is not None and self.sim.panes is not None:
                 panes = self.sim.panes(params, solution, self.palette)
                 set_property(self._panes, "content", pane.render(panes, self._style))
+        self.client.flush()
+
+    def look_from(self, view: Sequence[float], fit: bool = False) -> None:
+        """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError.
+
+        `fit`: the page has another size, and the view is what then fits the sim's first one; where the scene has
+        chosen another one since, that is fitted anew.
+        """
+        if fit and self._stage.looked is not None:
+            self._stage.look(*self._stage.looked)
+            self.client.flush()
+            return
+        viewpoint, target = np.array(view[:3]), np.array(view[3:])
+        if not (np.abs(view) < FARTHEST).all() or np.linalg.norm(viewpoint - target) < 1e-6:
+            allowed = f"six numbers within {FARTHEST:g} m: viewpoint x, y, z, and another place x, y, z to look at"
+            raise GeometryError("view", [*view], allowed)
+        self.client.camera.position = viewpoint
+        self.client.camera.look_at = target
         self.client.flush()
 
     def point(self, name: str) -> None:
@@ -240,7 +280,8 @@ class Viewer:
     def _add_panes(self) -> viser.GuiHtmlHandle | None:
         if self.sim.panes is None:
             return None
-        if self.look.phone:  # viser's bottom sheet puts other panels out of sight
+        # viser's bottom sheet puts other panels out of sight, and a low page has no room for a second one
+        if self.look.phone or (self.look.narrow and self.look.low):
             with self.client.gui.add_folder("Pictures"):
                 return self.client.gui.add_html("")
         panel = self.client.gui.add_panel()
@@ -263,6 +304,8 @@ class Viewer:
         for group, names in groups.items():
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
                 for name in names:
+                    if self.sim.files is not None and name == self.sim.files.previewed:
+                        self._preview = gui.add_html("")
                     self._controls += [self._control(params, name), *self._presets(params, name)]
                 if self.sim.files is not None and group == self.sim.files.group:
                     gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))
@@ -300,6 +343,7 @@ class Viewer:
         bounds: tuple[float, float] | None = None
         offered: Mapping[Any, str] | None = None
         absent: float | None = None
+        increment: float | None = None
         handle: Any
         if hints["control"] in ("numbers", "letters"):
             return Entries(gui, params, name, shared, self._listen, self._host.change)
@@ -320,9 +364,10 @@ class Viewer:
             handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
         else:
             bounds = params.bounds(name)
-            handle = gui.add_slider(label, *bounds, hints["step"], value, **shared)
+            increment = params.increment(name)
+            handle = gui.add_slider(label, *bounds, increment, value, **shared)
 
-        control = Control(name, handle, label, bounds, offered, absent)
+        control = Control(name, handle, label, bounds, offered, absent, increment)
         self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
         return control
 
@@ -380,9 +425,9 @@ def _unit(model: type[Params], name: str) -> str:
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:
-    """The buttons that every sim has, and links to what can be had as a file."""
-    links = "".join(
-        f'<a class="s3-button" href="result/{escape(name)}" download="{escape(name)}">Download {escape(name)}</a>'
+    """The buttons that every sim has, and those for what can be had as a file."""
+    files = "".join(
+        f'<button type="button" data-s3="download" value="{escape(name)}">Download {escape(name)}</button>'
         for name in downloads
     )
     return (
@@ -390,8 +435,13 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="share">Share link</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
-        f"{links}</div>"
+        f"{files}</div>"
     )
+
+
+def decimals(increment: float) -> int:
+    """How many decimals a slider of such steps needs."""
+    return min(max(-int(Decimal(f"{increment:.3g}").normalize().as_tuple().exponent), 0), 9)
 
 
 def bring(endings: Sequence[str], *, disabled: bool) -> str:

@@ -12,7 +12,7 @@ from sims.point_cloud.model import OWN, VIEWS, CloudParams, CloudSolution
 from sims.point_cloud.pictures import panes
 from sims.point_cloud.scene import CloudScene
 from sims.point_cloud.solving import pick, ply, solve
-from sims.point_cloud.words import describe, readouts
+from sims.point_cloud.words import describe, preview, readouts
 
 __all__ = ["SIM", "CloudParams", "CloudSolution", "solve"]
 
@@ -63,7 +63,7 @@ SIM = Sim(
         "file that is gone": {"dataset": "file", "file": "upload-gone", "process": "surface"},
         "nothing left": {"process": "clusters", "step": 1, "voxel_size": 1.0},
     },
-    files=Files(OWN, tuple(FORMATS), library.bring, library.offer),
+    files=Files(OWN, tuple(FORMATS), library.bring, library.offer, "columns", preview),
     downloads={"point-cloud.ply": ply},
     heavy=True,
     ahead=[partial(dataset, name) for name in DATASETS],

@@ -11,6 +11,8 @@ import numpy.typing as npt
 from geometry.arrays import Array
 
 Colors = npt.NDArray[np.uint8]
+EACH = ("points", "colors", "intensity", "ring", "scan", "normals")
+"""What a cloud has of each point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +22,11 @@ class Cloud:
     `colors` (N, 3) are RGB 0–255, `intensity` (N,) is 0–1, `ring` (N,) the laser of a rotating lidar, `scan` (N,)
     the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from. `dropped` points of the
     file had no finite coordinates. `truth` (4, 4) brings scan 1 onto scan 0, where that is known.
-    Of points too many to show, `left_out` aren't here. `origin` (3,) was taken from coordinates that were far away.
+    Of points too many to show, `left_out` aren't here, and `strays` were far from all others. `origin` (3,) was taken
+    from coordinates that were far away. Of a file: `normals` (N, 3) are its own, of length 1 or, where it has none, 0;
+    `intensity_span` are the file's values for intensities 0 and 1; `columns` are its columns' names, `roles` what each
+    was taken for (`files.meaning.ROLES`), `preview` its first entries; `unit` is that of its coordinates
+    (`files.units.METRES`); `notes` and `cautions` say in words how it was read.
     """
 
     name: str
@@ -35,25 +41,36 @@ class Cloud:
     simulated: bool = False
     left_out: int = 0
     origin: Array | None = None
+    normals: Array | None = None
+    strays: int = 0
+    intensity_span: tuple[float, float] | None = None
+    columns: tuple[str, ...] = ()
+    roles: tuple[str, ...] = ()
+    preview: tuple[tuple[str, ...], ...] = ()
+    unit: str = "metres"
+    notes: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.points)
 
     def only(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> Cloud:
         """The same cloud with some of its points."""
-        each: dict[str, Any] = {name: getattr(self, name) for name in ("points", "colors", "intensity", "ring", "scan")}
+        each: dict[str, Any] = {name: getattr(self, name) for name in EACH}
         kept: dict[str, Any] = {name: None if values is None else values[rows] for name, values in each.items()}
         sensor = self.sensor if self.sensor is None or self.sensor.ndim == 1 else self.sensor[rows]
         return replace(self, **kept, sensor=sensor)
 
-    def with_means(self, points: Array, colors: Colors | None, intensity: Array | None) -> Cloud:
+    def with_means(
+        self, points: Array, colors: Colors | None, intensity: Array | None, normals: Array | None = None
+    ) -> Cloud:
         """The same cloud with these in place of each point's."""
-        return replace(self, points=points, colors=colors, intensity=intensity)
+        return replace(self, points=points, colors=colors, intensity=intensity, normals=normals)
 
     def followed_by(self, other: Cloud) -> Cloud:
         """Both clouds' points; what only one of them knows is lost."""
         joined: dict[str, Any] = {}
-        for name in ("points", "colors", "intensity", "ring", "scan", "sensor"):
+        for name in (*EACH, "sensor"):
             both = getattr(self, name), getattr(other, name)
             joined[name] = None if any(v is None for v in both) else np.concatenate(both)
         return replace(self, **joined)

@@ -1,7 +1,8 @@
 """Clouds that aren't built in: those that learners bring, and those in the administrator's folder.
 
-A learner's cloud is known by an unguessable name as long as its session keeps it; nothing here does. An
-administrator's is known by its file's name, and read when somebody asks for it.
+A learner's file is known by an unguessable name as long as its session keeps it; nothing here does. An
+administrator's is known by its file's name, and read when somebody asks for it. Both may be read in more than one way:
+what is guessed of columns and units can be chosen instead.
 """
 
 from __future__ import annotations
@@ -12,43 +13,43 @@ import threading
 import time
 from collections.abc import Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
 from typing import Any
 from weakref import WeakValueDictionary
 
 import numpy as np
 
-from geometry import clouds
 from sims.kit import child
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import FORMATS, CloudFileError, read
+from sims.point_cloud.files.meaning import roles_of
 
 UPLOAD = "upload-"
 NAME = r'^[^/\\\x00-\x1f"<>|:*?]{1,120}$'
 """Of a file, without a path."""
-FAR = 10_000.0
-"""Metres from the origin, from which on coordinates as the browser has them (float32) would lose millimetres."""
-MOST_SHOWN = 500_000
-"""Points: what a browser turns smoothly."""
+GUESSED = ("", "auto")
+"""The columns and units of a file of which nothing was chosen."""
 NOTHING = Cloud("", np.empty((0, 3)))
 FIELDS = f"{__name__}:fields"
 KEPT = 4
-"""Clouds of the folder that are kept when nobody looks at them."""
+"""Clouds of the folder that are kept when nobody looks at them, and ways in which a learner's file was read."""
 AGAIN = 60.0
 """Seconds after which a file is tried again over which the child process failed; one that was refused stays so."""
 
-_brought: WeakValueDictionary[str, Cloud] = WeakValueDictionary()
+Choice = tuple[str, str]
+"""What columns and units are taken for: a letter for each of the first columns (`files.meaning.LETTERS`), a unit."""
+_brought: WeakValueDictionary[str, Brought] = WeakValueDictionary()
 _folder: dict[str, Path] = {}
-_readings: dict[str, _Reading] = {}
+_readings: dict[tuple[str, Choice], _Reading] = {}
 """Of the folder's files, the one that was asked for last at the end."""
 _lock = threading.Lock()
 _largest = 100_000_000
 
 
-def fields(name: str, data: bytes, largest: int) -> dict[str, Any]:
+def fields(name: str, data: bytes, largest: int, columns: str, units: str) -> dict[str, Any]:
     """The fields of the cloud in a file, as it is shown. Runs in the child process: see `sims.kit.child`."""
-    return vars(placed(read(name, data, largest)))
+    return vars(read(name, data, largest, roles_of(columns), units))
 
 
 def limits(size: int, largest: int) -> child.Limits:
@@ -56,15 +57,62 @@ def limits(size: int, largest: int) -> child.Limits:
     return child.Limits(memory=500_000_000 + 12 * largest, seconds=20.0 + size / 2e6)
 
 
-def bring(name: str, data: bytes, largest: int) -> tuple[Cloud, Mapping[str, Any]]:
-    """Make a cloud of a learner's file; return it, to be kept, and the changes of the state that show it.
+@dataclass(eq=False)
+class _Reading:
+    """A file as it was at some time, and what the child process makes of it for all who ask."""
+
+    stamp: tuple[int, int]
+    found: Future[child.Values]
+    cloud: Cloud | None = None
+    failed_at: float | None = None
+
+    def holds(self, stamp: tuple[int, int]) -> bool:
+        """Whether the file is still the same, and nothing is gained by reading it again."""
+        return self.stamp == stamp and (self.failed_at is None or time.monotonic() < self.failed_at + AGAIN)
+
+    def wait(self) -> Cloud:
+        """The cloud, when it is there. Raises what `child.result` does."""
+        try:
+            values = child.result(self.found)
+        except child.ChildFailed:
+            self.failed_at = self.failed_at or time.monotonic()
+            raise
+        with _lock:
+            self.cloud = self.cloud or Cloud(**values)
+        return self.cloud
+
+
+@dataclass(eq=False)
+class Brought:
+    """A learner's file, and what was made of it. Its bytes are kept: other columns may be chosen."""
+
+    name: str
+    data: bytes
+    largest: int
+    readings: dict[Choice, _Reading] = field(default_factory=dict)
+
+    def reading(self, choice: Choice) -> _Reading:
+        """The reading in that way, begun if it hasn't been; of those that were chosen, the newest few are kept."""
+        with _lock:
+            reading = self.readings.pop(choice, None)
+            if reading is None or not reading.holds((0, 0)):
+                reading = _Reading((0, 0), _asked(self.name, self.data, len(self.data), self.largest, choice))
+            self.readings[choice] = reading
+            for old in [one for one in self.readings if one != GUESSED][:-KEPT]:
+                del self.readings[old]
+        return reading
+
+
+def bring(name: str, data: bytes, largest: int) -> tuple[Brought, Mapping[str, Any]]:
+    """Make a cloud of a learner's file; return what is to be kept, and the changes of the state that show it.
 
     Raises ChildRefusal or ChildFailed, in words for the learner.
     """
-    cloud = Cloud(**child.read(FIELDS, name, data, limits=limits(len(data), largest), largest=largest))
+    brought = Brought(PurePosixPath(name.replace("\\", "/")).name[-80:], data, largest)
+    brought.reading(GUESSED).wait()
     known_as = UPLOAD + secrets.token_urlsafe(12)
-    _brought[known_as] = cloud
-    return cloud, {"dataset": "file", "file": known_as}
+    _brought[known_as] = brought
+    return brought, {"dataset": "file", "file": known_as}
 
 
 def offer(folder: Path, largest: int) -> None:
@@ -86,58 +134,41 @@ def offered(file: str | None) -> dict[str | None, str]:
     return offers
 
 
-def find(file: str | None) -> Cloud:
-    """The cloud of that name; `NOTHING` if there is none, or it can't be read."""
-    if file in _folder:
-        return _from_folder(file)[0]
-    return _brought.get(file or "", NOTHING)
+def find(file: str | None, choice: Choice = GUESSED) -> Cloud:
+    """The cloud of that name, read as chosen; `NOTHING` if there is none, or it can't be read."""
+    return _found(file, choice)[0]
 
 
-def trouble(file: str | None) -> str:
+def known(file: str | None, choice: Choice = GUESSED) -> Cloud:
+    """The same as far as somebody has read it already: without waiting, and `NOTHING` if nobody has."""
+    brought = _brought.get(file or "")
+    reading = brought.readings.get(choice) if brought else _readings.get((file or "", choice))
+    return (reading and reading.cloud) or NOTHING
+
+
+def trouble(file: str | None, choice: Choice = GUESSED) -> str:
     """In words, why there is no cloud of that name; empty if there is one."""
+    return _found(file, choice)[1]
+
+
+def _found(file: str | None, choice: Choice) -> tuple[Cloud, str]:
     if not file:
-        return "No file yet: bring your own, or choose one."
-    if file in _folder:
-        return _from_folder(file)[1]
-    if file in _brought:
-        return ""
-    if file.startswith(UPLOAD):
-        return "This file is gone: the server keeps it only while its sim is open. Bring it again."
-    return f"There is no file named “{file}” here."
-
-
-@dataclass(eq=False)
-class _Reading:
-    """A file of the folder as it was at some time, and what the child process makes of it for all who ask."""
-
-    stamp: tuple[int, int]
-    found: Future[child.Values]
-    cloud: Cloud | None = None
-    failed_at: float | None = None
-
-    def holds(self, stamp: tuple[int, int]) -> bool:
-        """Whether the file is still the same, and nothing is gained by reading it again."""
-        return self.stamp == stamp and (self.failed_at is None or time.monotonic() < self.failed_at + AGAIN)
-
-
-def _from_folder(file: str) -> tuple[Cloud, str]:
+        return NOTHING, "No file yet: bring your own, or choose one."
+    brought = _brought.get(file)
+    if brought is None and file not in _folder:
+        if file.startswith(UPLOAD):
+            return NOTHING, "This file is gone: the server keeps it only while its sim is open. Bring it again."
+        return NOTHING, f"There is no file named “{file}” here."
+    name = brought.name if brought else file
     try:
-        reading = _begun(file)
-        try:
-            values = child.result(reading.found)
-        except child.ChildFailed:
-            reading.failed_at = reading.failed_at or time.monotonic()
-            raise
+        return (brought.reading(choice) if brought else _from_folder(file, choice)).wait(), ""
     except OSError:
-        return NOTHING, f"“{file}” can't be read."
+        return NOTHING, f"“{name}” can't be read."
     except ValueError as error:
-        return NOTHING, f"“{file}” can't be read. {error}"
-    with _lock:
-        reading.cloud = reading.cloud or Cloud(**values)
-    return reading.cloud, ""
+        return NOTHING, f"“{name}” can't be read{' so' if choice != GUESSED else ''}. {error}"
 
 
-def _begun(file: str) -> _Reading:
+def _from_folder(file: str, choice: Choice) -> _Reading:
     """The reading of a file as it is now, begun if nobody has; the oldest ones that are done are forgotten."""
     path = _folder[file]
     status = path.stat()
@@ -145,24 +176,17 @@ def _begun(file: str) -> _Reading:
         raise CloudFileError(f"It is larger than {_largest / 1e6:,.0f} MB.")
     stamp = status.st_mtime_ns, status.st_size
     with _lock:
-        reading = _readings.pop(file, None)
+        reading = _readings.pop((file, choice), None)
         if reading is None or not reading.holds(stamp):
-            allowed = limits(status.st_size, _largest)
-            reading = _Reading(stamp, child.begin(FIELDS, file, path, limits=allowed, largest=_largest))
-        _readings[file] = reading
-        done = [name for name, one in _readings.items() if one.found.done() and one.found.exception() is None]
-        for name in done[:-KEPT]:
-            del _readings[name]
+            reading = _Reading(stamp, _asked(file, path, status.st_size, _largest, choice))
+        _readings[file, choice] = reading
+        done = [key for key, one in _readings.items() if one.found.done() and one.found.exception() is None]
+        for key in done[:-KEPT]:
+            del _readings[key]
     return reading
 
 
-def placed(cloud: Cloud) -> Cloud:
-    """The cloud near the origin, and with no more points than a browser can take."""
-    every = -(-len(cloud) // MOST_SHOWN)
-    if every > 1:
-        cloud = replace(cloud.only(np.arange(0, len(cloud), every)), left_out=len(cloud) - -(-len(cloud) // every))
-    low, high = clouds.bounds(cloud.points)
-    if max(np.abs(low).max(), np.abs(high).max()) < FAR:
-        return cloud
-    origin = 100.0 * np.floor(low / 100.0)
-    return replace(cloud, points=cloud.points - origin, origin=origin)
+def _asked(name: str, data: bytes | Path, size: int, largest: int, choice: Choice) -> Future[child.Values]:
+    columns, units = choice
+    allowed = limits(size, largest)
+    return child.begin(FIELDS, name, data, limits=allowed, largest=largest, columns=columns, units=units)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
@@ -9,11 +10,13 @@ from typing import Any, Literal, Self
 from pydantic import model_validator
 
 from geometry.arrays import Array
-from sims.kit.params import Params, choice, number, spell, switch, text
+from sims.kit.params import Params, choice, letters, number, spell, switch, text
 from sims.kit.sim import DRAWN, Step, View
 from sims.point_cloud import library, processes
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.files.meaning import ROLES, letters_of
 from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
-from sims.point_cloud.shown import Drawn
+from sims.point_cloud.shown import Drawn, whole
 
 MOST_POINTS = 10_000_000
 VIEWS = {
@@ -23,6 +26,11 @@ VIEWS = {
     "two-scans": View((3.4, -5.6, 3.4), (-0.1, -0.1, 0.95), 3.3),
 }
 OWN = "Your own data"
+MOST_COLUMNS = 12
+"""That can be chosen; those behind are as they are guessed."""
+REACH = {"voxel_size": 1.0, "distance": 2.0}
+"""Greatest lengths of the built-in clouds, in metres; those of a file follow from its size."""
+LONGEST = 100_000.0
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
 
@@ -66,10 +74,11 @@ class CloudParams(Params):
         2.0, 0.5, 10.0, step=0.5, title="Point size", description="About in pixels, as the sim opens"
     )
     voxel_size: float = number(
-        0.0, 0.0, 1.0, step=0.005, unit="m", title="Voxel size",
-        description="Edge of the cells; the points in each become their mean. At 0 all points are shown",
+        0.0, 0.0, LONGEST, step=0.005, unit="m", title="Voxel size",
+        description="Edge of the cells; the points in each become their mean. At 0 all points are shown. At most 1 m, "
+        "but for a file",
     )  # fmt: skip
-    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals, to the sensor")
+    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals")
     neighbors: int = number(
         16, 5, 50, step=1, title="Neighbours k",
         description="How many nearest points, itself included, a normal and an outlier are judged by",
@@ -100,8 +109,8 @@ class CloudParams(Params):
         labels={"plane": "Point to plane", "point": "Point to point"}, group="Settings of the process",
     )  # fmt: skip
     distance: float = number(
-        0.0, 0.0, 2.0, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
-        description="At 0 it follows from how dense the cloud is",
+        0.0, 0.0, LONGEST, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
+        description="At 0 it follows from how dense the cloud is. At most 2 m, but for a file",
     )  # fmt: skip
     deviations: float = number(
         2.0, 0.5, 4.0, step=0.1, title="Deviations of an outlier", group="Settings of the process",
@@ -111,6 +120,23 @@ class CloudParams(Params):
     file: str | None = text(
         title="File", description="A cloud of your own, or one of this server's folder", control="choice", group=OWN,
         pattern=library.NAME, allowed="the name of a file, without a path",
+    )  # fmt: skip
+    units: Literal["auto", "metres", "millimetres", "feet", "us-feet", "degrees"] = choice(
+        "auto", title="Unit of the file", group=OWN,
+        description="What the file's coordinates are in. Guessed from its coordinate system, names and size",
+        labels={
+            "auto": "As guessed",
+            "metres": "Metres",
+            "millimetres": "Millimetres",
+            "feet": "Feet",
+            "us-feet": "US survey feet",
+            "degrees": "Degrees (longitude, latitude)",
+        },
+    )  # fmt: skip
+    columns: str = letters(
+        "", fewest=0, most=MOST_COLUMNS, title="Columns", entry="Column {}", group=OWN,
+        description="What each column of the file is taken for; of one for which nothing is chosen, it is guessed",
+        labels={letters_of([role]): words for role, words in ROLES.items()},
     )  # fmt: skip
 
     def options(self, name: str) -> Mapping[Any, str]:
@@ -129,6 +155,31 @@ class CloudParams(Params):
         return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
 
     @property
+    def choice(self) -> library.Choice:
+        """In which way the file is read."""
+        return self.columns, self.units
+
+    def _known(self) -> Cloud:
+        """The file's cloud, as far as it has been read."""
+        return library.known(self.file, self.choice) if self.dataset == "file" else library.NOTHING
+
+    def guess(self) -> Cloud:
+        """The file's cloud with columns and units as guessed, as far as it has been read."""
+        return library.known(self.file) if self.dataset == "file" else library.NOTHING
+
+    def entries(self, name: str) -> Any:
+        """The columns' dropdowns say what is guessed where nothing is chosen."""
+        if name != "columns":
+            return super().entries(name)
+        guessed = letters_of(self.guess().roles[:MOST_COLUMNS])
+        return self.columns + guessed[len(self.columns) :]
+
+    def entry_label(self, name: str, k: int) -> str:
+        names = self.guess().columns if name == "columns" else ()
+        label = super().entry_label(name, k)
+        return f"{label}: {names[k][:24]}" if k < len(names) and names[k] else label
+
+    @property
     def facing(self) -> int:
         """Neighbours that a registration's normals follow from: to points it needs none, and they change nothing."""
         return self.neighbors if self.method == "plane" else 16
@@ -136,7 +187,7 @@ class CloudParams(Params):
     @property
     def course(self) -> tuple[Any, ...]:
         """All that a registration follows from."""
-        return self.dataset, self.file, self.voxel_size, self.facing, self.method, self.distance
+        return self.dataset, self.file, self.choice, self.voxel_size, self.facing, self.method, self.distance
 
     @property
     def last_step(self) -> int:
@@ -146,25 +197,55 @@ class CloudParams(Params):
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step":
             return 0, max(self.last_step, self.step, 1)  # a link may name any step: beyond the last one is the last
+        if name in REACH:
+            return 0.0, REACH[name] if self.dataset != "file" else max(self._reach(name), getattr(self, name))
         return super().bounds(name)
 
+    def _reach(self, name: str) -> float:
+        """The greatest length that a slider offers: a round one, about a tenth of the cloud's size."""
+        cloud = self._known()
+        if not len(cloud):
+            return REACH[name]
+        wanted = 0.2 * whole(cloud).radius * REACH[name]
+        power = 10.0 ** math.floor(math.log10(wanted))
+        return min(next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= wanted * 0.999), LONGEST)
+
+    def increment(self, name: str) -> float:
+        """As many steps for a file of any size."""
+        return self._reach(name) / 200.0 if name in REACH and self.dataset == "file" else super().increment(name)
+
     def form(self) -> tuple[Any, ...]:
-        return *super().form(), self.last_step
+        return *super().form(), self.last_step, self._known(), self.guess()
 
     def label(self, name: str) -> str:
         return WHAT_DISTANCE_IS[self.process] if name == "distance" else super().label(name)
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         """What `changed` does; no step is beyond the last, and a point that may be another is let go."""
-        now = self._with_step(changes)
+        now = self._with_step(self._exchanged(changes))
         turned = {name for name, value in now.items() if value != getattr(self, name)}
         if "file" in turned and now["file"]:
             now.setdefault("dataset", "file")
+        if "file" in turned:
+            now = {"columns": "", "units": "auto", **now}
         if "step" in now:
             now["step"] = min(now["step"], self.model_copy(update=now).last_step)
         if self.selected is not None and self._renumbers(turned):
             now.setdefault("selected", None)
         return super().moved(now)
+
+    def _exchanged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """A column that becomes what another one was gives that one its own role, so that no two are the same."""
+        before, now = self.entries("columns"), self._whole(changes)
+        columns = now.get("columns")
+        if columns is None or "columns" in changes:
+            return now
+        for old, new in zip(before, columns, strict=True):
+            if old != new and new != "-":
+                at = before.index(new) if new in before else -1
+                columns = "".join(old if k == at else letter for k, letter in enumerate(columns))
+        guessed = letters_of(self.guess().roles[:MOST_COLUMNS])
+        return {**now, "columns": "" if columns == guessed else columns}
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """A process begins at its result, a registration at its start."""
@@ -194,6 +275,24 @@ class Selected:
 
 
 @dataclass(frozen=True, eq=False)
+class Source:
+    """How a file was read: its columns' names, what each was taken for, and its unit; and how many points it lost.
+
+    Its points in metres are `origin` away from where they are shown. `notes` say the rest in words.
+    """
+
+    name: str
+    columns: list[str]
+    taken_for: list[str]
+    unit: str
+    origin: Array | None
+    dropped: int
+    strays: int
+    left_out: int
+    notes: list[str]
+
+
+@dataclass(frozen=True, eq=False)
 class CloudSolution:
     """What the sim knows of the shown points."""
 
@@ -205,6 +304,8 @@ class CloudSolution:
     selected: Selected | None
     colored_by: str
     """What the colours say: the dataset may not have what was asked for."""
+    source: Source | None
+    """What a file was taken for; null of a built-in dataset."""
     ground: Ground | None
     clusters: Clusters | None
     outliers: Outliers | None
@@ -219,7 +320,7 @@ def play(p: CloudParams) -> Iterator[Step]:
     """The process from its start; without one, the cells grow."""
     if p.process == "none":
         yield Step({"voxel_size": 0.0}, 0.0)
-        yield Step({"voxel_size": 0.25}, 4.0)
+        yield Step({"voxel_size": 0.25 * p.bounds("voxel_size")[1]}, 4.0)
         return
     for step in range(MOST_STEPS + 1):
         if step > p.last_step:  # which may be known only after the first

@@ -231,6 +231,8 @@ def surface(thin: Cloud, voxel: float, distance: float) -> Surface | None:
     begins("Rolling a ball over the points")
     low, high = clouds.bounds(thin.points)
     cell = max(voxel, float((high - low).max()) / 90.0)
+    if not cell > 0.0:
+        return None
     points = _meshed(thin.points, cell) if cell > voxel else thin.points
     while len(points) > MESHED:
         cell *= 1.05 * math.sqrt(len(points) / MESHED)

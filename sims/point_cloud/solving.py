@@ -14,7 +14,7 @@ from sims.point_cloud import library, processes, shown
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.files import ply_bytes
-from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
+from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected, Source
 from sims.point_cloud.shown import NO_ARROWS, Drawn, Layer, layer
 from sims.point_cloud.work import LOCAL, colored_by, local, tally, thinned
 
@@ -23,7 +23,7 @@ MOST_LABELS = 7
 
 def source(p: CloudParams) -> Cloud:
     """The cloud of a state."""
-    return library.find(p.file) if p.dataset == "file" else dataset(p.dataset)
+    return library.find(p.file, p.choice) if p.dataset == "file" else dataset(p.dataset)
 
 
 @dataclass
@@ -51,10 +51,19 @@ def solve(p: CloudParams) -> CloudSolution:
     return CloudSolution(
         points_in=len(cloud), points_out=len(result.base.rows) + len(result.marked.rows),
         minimum=low, maximum=high, dimensions=high - low, selected=_selected(p, thin, result),
-        colored_by=colored_by(cloud, p.color), ground=result.ground, clusters=result.clusters,
+        colored_by=colored_by(cloud, p.color),
+        source=_source(cloud) if p.dataset == "file" and len(cloud) else None,
+        ground=result.ground, clusters=result.clusters,
         outliers=result.outliers, registration=result.registration, surface=result.surface,
-        trouble=library.trouble(p.file) if p.dataset == "file" else "",
+        trouble=library.trouble(p.file, p.choice) if p.dataset == "file" else "",
         drawn=_drawn(p, cloud, thin, result, low, high),
+    )  # fmt: skip
+
+
+def _source(cloud: Cloud) -> Source:
+    return Source(
+        cloud.name, list(cloud.columns), list(cloud.roles), cloud.unit, cloud.origin, cloud.dropped, cloud.strays,
+        cloud.left_out, [*cloud.notes, *cloud.cautions],
     )  # fmt: skip
 
 
@@ -202,11 +211,16 @@ def shown_points(p: CloudParams) -> Cloud:
         return kept
     first = len(result.base.rows)
     moved = se3.apply(result.T, kept.points[first:])
-    return kept.with_means(np.concatenate([kept.points[:first], moved]), kept.colors, kept.intensity)
+    turned = (
+        None
+        if kept.normals is None
+        else np.concatenate([kept.normals[:first], kept.normals[first:] @ result.T[:3, :3].T])
+    )
+    return kept.with_means(np.concatenate([kept.points[:first], moved]), kept.colors, kept.intensity, turned)
 
 
 def ply(p: CloudParams) -> bytes:
     """The shown points as a PLY file, where the file that they came from has them."""
     kept = shown_points(p)
     back = kept.points if kept.origin is None else kept.points + kept.origin
-    return ply_bytes(kept.with_means(back, kept.colors, kept.intensity))
+    return ply_bytes(kept.with_means(back, kept.colors, kept.intensity, kept.normals))

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, symbol
+from sims.kit.readout import THIN, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.files.meaning import IGNORED, ROLES
 from sims.point_cloud.library import UPLOAD
-from sims.point_cloud.model import CloudParams, CloudSolution
+from sims.point_cloud.model import MOST_COLUMNS, OWN, CloudParams, CloudSolution
 from sims.point_cloud.processes import Registered
 
 SENSORS = {
@@ -50,14 +52,37 @@ def _file(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     if not len(cloud):
         return
     yield Note(f"From the file “{cloud.name}”.")
-    if cloud.dropped:
-        yield Note(f"{count(cloud.dropped)} points without finite coordinates were left out.", "near")
-    if cloud.left_out:
-        yield Note(f"Too many for a browser: {count(cloud.left_out)} points, evenly chosen, were left out.", "near")
+    for caution in cloud.cautions:
+        yield Note(caution, "near")
+    yield Note(f"Columns taken for {_taken(cloud)}. Choose otherwise under “{OWN}”.")
+    for note in cloud.notes:
+        yield Note(note)
     if cloud.origin is not None:
         yield Formula("Far from its origin: add to the coordinates", symbol("o"), row(cloud.origin.tolist(), 0), "m")
     if p.file and p.file.startswith(UPLOAD):
         yield Note("A link can't carry your file: it works here, as long as somebody has the sim open.")
+
+
+def _taken(cloud: Cloud) -> str:
+    """What each column of a file was taken for, in their order."""
+    names = [f"“{name}”" if name else f"column {k + 1}" for k, name in enumerate(cloud.columns)]
+    used = [f"{ROLES[role]} ({name})" for name, role in zip(names, cloud.roles, strict=True) if role != IGNORED]
+    rest = [name for name, role in zip(names, cloud.roles, strict=True) if role == IGNORED]
+    return ", ".join(used) + (f"; not used: {', '.join(rest)}" if rest else "")
+
+
+def preview(p: CloudParams) -> Table | None:
+    """The first lines of a file, by its columns."""
+    cloud = p.guess()
+    if not cloud.preview:
+        return None
+    lines = len(cloud.preview[0])
+    head = ["Column", *(f"Line {k + 1}" for k in range(lines))]
+    rows = [
+        [f"{k + 1} {name[:14]}".rstrip(), *(entry[:12] for entry in entries), *[""] * (lines - len(entries))]
+        for k, (name, entries) in enumerate(zip(cloud.columns, cloud.preview, strict=True))
+    ]
+    return Table("The first lines of the file", [head, *rows[:MOST_COLUMNS]])
 
 
 def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
@@ -77,6 +102,13 @@ def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
         yield Note("No surface: the ball falls through between the points. Choose a larger one.", "warn")
 
 
+def _facing(cloud: Cloud) -> str:
+    """Where normals point to, as far as that is known."""
+    if cloud.normals is not None:
+        return "as the file has it"
+    return "towards the sensor" if cloud.sensor is not None else "upwards: nobody knows where the sensor was"
+
+
 def _selected(s: CloudSolution) -> Iterator[Formula]:
     if (chosen := s.selected) is None:
         return
@@ -84,7 +116,7 @@ def _selected(s: CloudSolution) -> Iterator[Formula]:
     if chosen.color is not None:
         yield Formula("Its colour: red, green, blue", symbol("c"), row(chosen.color.tolist(), 0))
     if chosen.normal is not None:
-        yield Formula("Its normal, towards the sensor", symbol("n"), row(chosen.normal.tolist()))
+        yield Formula(f"Its normal, {_facing(s.drawn.cloud)}", symbol("n"), row(chosen.normal.tolist()))
     if chosen.intensity is not None:
         yield Formula("Its intensity", symbol("I"), mathml(chosen.intensity))
     if chosen.variation is not None:

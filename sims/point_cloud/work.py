@@ -48,12 +48,20 @@ def _thinned(cloud: Cloud, size: float) -> Cloud:
         points=cells.points,
         colors=None if cloud.colors is None else np.rint(cells.mean(cloud.colors)).astype(np.uint8),
         intensity=None if cloud.intensity is None else cells.mean(cloud.intensity),
+        normals=None if cloud.normals is None else _of_length_one(cells.mean(cloud.normals)),
     )
+
+
+def _of_length_one(vectors: Array) -> Array:
+    """The same directions (N, 3); zero where there is none."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    directions: Array = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 1e-9)
+    return directions
 
 
 @dataclass(frozen=True, eq=False)
 class Local:
-    """What the neighbours of each point say: unit normals (N, 3) to the sensor, and the surface variation (N,).
+    """Unit normals (N, 3), the file's own or by each point's neighbours to the sensor, and surface variation (N,).
 
     Where they are on a line, or too few, there is no normal and no variation: zero and NaN.
     """
@@ -79,11 +87,13 @@ def local(cloud: Cloud, neighbors: int) -> Local:
             vectors[rows] = np.nan_to_num(found.normals, nan=0.0)
             variation[rows] = np.where(found.defined, found.variation, np.nan)
         before += len(rows)
+    if cloud.normals is not None:
+        vectors = np.where(cloud.normals.any(axis=1, keepdims=True), cloud.normals, vectors)
     return Local(vectors, variation)
 
 
 def normals(cloud: Cloud, neighbors: int) -> Array:
-    """Unit normals (N, 3) to the sensor; zero where there is none."""
+    """Unit normals (N, 3); zero where there is none."""
     return local(cloud, neighbors).normals
 
 

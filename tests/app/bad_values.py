@@ -67,7 +67,7 @@ def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
 
 def for_link(field: FieldInfo) -> Iterator[tuple[str, str]]:
     """What is wrong, and how it is spelled."""
-    if not may_be_empty(field):
+    if not may_be_empty(field) and extra(field).get("fewest") != 0:
         yield "empty", ""
     yield "markup", HOSTILE
     yield "too long", "1" * 401

@@ -1016,3 +1016,50 @@ def test_what_works_beside_the_loop_gives_way_to_it() -> None:
     with workers("test", 1) as pool:
         assert pool.submit(inside).result() == ((min(own + 10, 19),) * 2 if sys.platform == "linux" else (own, own))
     assert niceness() == own
+
+
+def test_nobody_waits_for_those_who_take_long() -> None:
+    """Three rooms solve for long, which is more than may do so at once; another is soon served all the same."""
+
+    async def test() -> None:
+        sessions = Sessions(8)
+        slow, _ = toy(6.0, heavy=True)
+        quick, solver = toy(heavy=True)
+        for room in "abc":
+            sessions.open(slow, room, slow.params())
+        await asyncio.sleep(0.1)
+        begun = time.monotonic()
+        other = sessions.open(quick, "d", quick.params())
+        while not solver.solved or other.solution is None:
+            await asyncio.sleep(0.02)
+        assert time.monotonic() - begun < 4.0
+        sessions.close()
+
+    asyncio.run(asyncio.wait_for(test(), 20))
+
+
+def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
+    async def test() -> None:
+        at_once, most = 0, 0
+
+        def slowly(*_: Any) -> dict[str, Any]:
+            nonlocal at_once, most
+            at_once += 1
+            most = max(most, at_once)
+            time.sleep(0.2)
+            at_once -= 1
+            return {}
+
+        sim, _ = toy(heavy=True)
+        sim = dataclasses.replace(sim, solve=slowly, handles={"/grip": slowly}, describe=lambda p, s: "")
+        sessions = Sessions(8)
+        room = sessions.open(sim, "a", sim.params())
+        room.drag("/grip", (1.0, 2.0, 3.0))
+        room.change({"size": 5.0})
+        await asyncio.sleep(0.1)
+        while room._drawing is not None or room._seeking is not None:
+            await asyncio.sleep(0.05)
+        assert most == 1
+        sessions.close()
+
+    asyncio.run(asyncio.wait_for(test(), 20))

@@ -19,7 +19,7 @@ PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Week 3: ro
   const say = (message) => document.querySelector("iframe").contentWindow.postMessage(message, "*");
 </script>
 <h1>Week 3: rotations</h1>
-<iframe title="A sim" width="700" height="600" style="border: 0" src="{address}" {attributes}></iframe></html>"""
+{before}<iframe title="A sim" width="700" height="600" style="border: 0" src="{address}" {attributes}></iframe></html>"""
 
 
 class CourseSite:
@@ -59,9 +59,10 @@ class CourseSite:
     def url(self) -> str:
         return f"http://localhost:{self._server.server_port}/"
 
-    def show(self, learner: Learner, path: str, attributes: str = "") -> None:
-        """Open the course page with a sim of the learner's server in its frame."""
-        self.page = PAGE.format(address=escape(f"{learner.url}/sims/{path}"), attributes=attributes)
+    def show(self, learner: Learner, path: str, attributes: str = "", *, before: str = "") -> None:
+        """Open the course page with a sim of the learner's server in its frame, after some more of the page."""
+        address = escape(f"{learner.url}/sims/{path}")
+        self.page = PAGE.format(address=address, attributes=attributes, before=before)
         learner.page.goto(self.url)
 
 

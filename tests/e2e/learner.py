@@ -142,7 +142,7 @@ class Learner:
 
     def enter_frame(self) -> None:
         """Go on in the frame of the page that holds a sim."""
-        self.frame = self.until(lambda: next(f for f in self.page.frames if "/s/" in f.url))
+        self.frame = self.until(lambda: next(f for f in self.page.frames if f.url.split("?")[0].endswith("/embed")))
         self.wait_live()
 
     def reload(self) -> None:
@@ -177,6 +177,17 @@ class Learner:
     def address(self) -> str:
         url: str = self.frame.evaluate("location.href")
         return url
+
+    @property
+    def room(self) -> str:
+        """The link that shares control of the room; the page has it, its address doesn't."""
+        link: str = self.frame.evaluate("sim3.place")
+        return link
+
+    @property
+    def watch_link(self) -> str:
+        """The link with which others only watch the room."""
+        return self.room.removesuffix("/").rpartition("/")[0] + "/"
 
     @property
     def slug(self) -> str:

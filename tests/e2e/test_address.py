@@ -26,10 +26,10 @@ def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom
     learner.sees(yaw=30)
     assert "yaw" not in learner.query()
 
-    room = urlsplit(learner.address).path
+    room = learner.room
     learner.reload()
     solution = learner.sees(yaw=30, roll=-77, frame="extrinsic")
-    assert urlsplit(learner.address).path == room
+    assert learner.room == room, "a reload goes on in its room"
     learner.until(
         lambda: np.testing.assert_allclose(
             learner.scene.world_pose("/turn1/turn2/turn3")[:3, :3], solution["R"], atol=1e-6
@@ -128,3 +128,24 @@ def test_theme_view_and_controls_of_a_link_work_and_last(classroom: Classroom) -
     learner.reload()
     learner.sees(yaw=5)
     assert learner.frame.get_by_role("slider").count() == 0
+
+
+def test_the_address_never_holds_the_key_of_a_room(classroom: Classroom) -> None:
+    teacher = classroom.open("euler-angles/embed?yaw=45&theme=light")
+    helper = classroom.open(f"{teacher.room}?theme=light")
+    for learner in (teacher, helper):
+        learner.sees(yaw=45)
+        assert learner.address == f"{teacher.url}/sims/euler-angles/embed?yaw=45&theme=light"
+    assert helper.room == teacher.room
+    helper.type("yaw", "50")
+    teacher.sees(yaw=50)
+
+    copied = classroom.open(teacher.address)
+    copied.sees(yaw=50)
+    assert copied.room != teacher.room, "whoever copies the address gets a room of their own"
+    helper.reload()
+    helper.type("yaw", "55")
+    teacher.sees(yaw=55)
+    copied.sees(yaw=50)
+    key = teacher.room.rstrip("/").rpartition("/")[2]
+    assert [address for address in teacher.addresses + copied.addresses if key in address] == []

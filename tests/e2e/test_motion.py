@@ -18,7 +18,7 @@ def progress(learner: Learner, since: int = 0) -> list[float]:
 
 def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classroom) -> None:
     learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL)
-    watcher = classroom.open(learner.address, size=SMALL)
+    watcher = classroom.open(learner.room, size=SMALL)
     watcher.sees(yaw=90)
     turned: list[float] = []
     learner.press("Animate sequence")

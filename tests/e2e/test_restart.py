@@ -8,7 +8,6 @@ from playwright.sync_api import ViewportSize
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite
 from tests.e2e.learner import Learner
-from tests.e2e.test_rooms import watch_only
 from tests.server import Server
 
 SMALL: ViewportSize = {"width": 640, "height": 480}
@@ -29,7 +28,7 @@ def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: 
         learner = classroom.open("euler-angles/embed?yaw=45", size=SMALL)
         learner.type("roll", "-66")
         learner.sees(yaw=45, roll=-66)
-        watcher = classroom.open(watch_only(learner.address), size=SMALL)
+        watcher = classroom.open(learner.watch_link, size=SMALL)
         watcher.sees(roll=-66)
         framed = classroom.enter(size={"width": 720, "height": 640})
         course.show(framed, "euler-angles/embed?pitch=-35")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from urllib.parse import urlsplit, urlunsplit
-
 import numpy as np
 
 from tests.e2e.conftest import Classroom
@@ -12,7 +10,7 @@ from tests.frames import differences
 
 # Panel widths and the names of sessions and connections aside, viewers of a room receive the same.
 PRIVATE = """async (viewer) => {
-  const socket = new WebSocket(`${sim3.path}channel?viewer=${viewer}`);
+  const socket = new WebSocket(`${sim3.socket}channel?viewer=${viewer}`);
   const answers = [];
   socket.onmessage = (event) => answers.push(JSON.parse(event.data));
   await new Promise((done) => (socket.onopen = done));
@@ -26,13 +24,6 @@ PRIVATE = """async (viewer) => {
   socket.close();
   return answers;
 }"""
-
-
-def watch_only(address: str) -> str:
-    """The address of a room without its key and state."""
-    parts = urlsplit(address)
-    slug_and_room = parts.path.strip("/").split("/")[:-1]
-    return urlunsplit((parts.scheme, parts.netloc, "/" + "/".join(slug_and_room) + "/", "", ""))
 
 
 def same_scene(a: Learner, b: Learner) -> None:
@@ -51,7 +42,7 @@ def same_scene(a: Learner, b: Learner) -> None:
 def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom) -> None:
     ada = classroom.open("euler-angles/embed?yaw=45")
     bob = classroom.open("euler-angles/embed?yaw=45")
-    assert urlsplit(ada.address).path != urlsplit(bob.address).path
+    assert ada.room != bob.room
     before = bob.scene.messages
 
     ada.type("pitch", "-60")
@@ -67,8 +58,8 @@ def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom
 
 def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom: Classroom) -> None:
     teacher = classroom.open("euler-angles/embed?yaw=70")
-    helper = classroom.open(teacher.address)
-    watcher = classroom.open(watch_only(teacher.address))
+    helper = classroom.open(teacher.room)
+    watcher = classroom.open(teacher.watch_link)
     helper.sees(yaw=70)
     watcher.sees(yaw=70)
 
@@ -101,7 +92,7 @@ def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom:
 
 def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themselves(classroom: Classroom) -> None:
     teacher = classroom.open("camera/embed")
-    watcher = classroom.open(watch_only(teacher.address))
+    watcher = classroom.open(teacher.watch_link)
 
     def lit(learner: Learner, name: str) -> None:
         learner.until(lambda: learner.lights(name, "g tr" if name else ""))

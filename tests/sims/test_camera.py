@@ -273,8 +273,10 @@ def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p:
     assert len(dots) == len(seen)
     for dot, point in zip(dots, seen, strict=True):
         assert miss(*sight_line(p, dot), np.array(point["world"])) < 1e-6 * max(1.0, point["depth"])
-    rays = rig.model.points("/camera/rays").reshape(-1, 2, 3)
-    np.testing.assert_allclose(rays[:, 1], [point["world"] for point in seen] or np.empty((0, 3)), rtol=0, atol=2e-6)
+    assert rig.model.visible("/camera/rays") == (bool(seen) and p.show_rays)
+    if seen and p.show_rays:
+        rays = rig.model.points("/camera/rays").reshape(-1, 2, 3)
+        np.testing.assert_allclose(rays[:, 1], [point["world"] for point in seen], rtol=0, atol=2e-6)
     chosen = s.point(p.selected)
     assert rig.model.visible("/camera/ray") == (chosen["pixel"] is not None) == rig.model.visible("/camera/dot")
     if chosen["pixel"] is not None:

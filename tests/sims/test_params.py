@@ -114,7 +114,23 @@ def test_state_cannot_be_assigned_to() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "abc", "nan", "inf", "-Infinity", "1e999", "181", "-180.0001", "1,2", "0x10", "30°", "30;", "\x00", "−30"],
+    [
+        "",
+        "abc",
+        "nan",
+        "inf",
+        "-Infinity",
+        "1e999",
+        "181",
+        "-180.0001",
+        "1,2",
+        "0x10",
+        "30°",
+        "30;",
+        "\x00",
+        "−−30",
+        "−",
+    ],
 )
 def test_bad_number_is_named_with_what_is_allowed(text: str) -> None:
     with pytest.raises(BadParams) as caught:

@@ -42,6 +42,8 @@ class Stage:
         self._width = width
         """Pixels that panels leave to the scene, once they are there."""
         self._phone = phone
+        self.looked: tuple[Vector, Vector, float] | None = None
+        """What `look` was told last."""
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
@@ -69,6 +71,7 @@ class Stage:
 
     def look(self, position: Vector, look_at: Vector, radius: float) -> None:
         """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
+        self.looked = position, look_at, radius
         view.look(self.client.camera, position, look_at, radius, width=self._width, phone=self._phone)
 
     def group(self, name: str) -> Node:

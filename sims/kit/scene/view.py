@@ -21,7 +21,8 @@ def look(camera: Any, position: Vector, look_at: Vector, radius: float, *, width
     `width`: pixels that panels leave to the scene.
     """
     seen = SHEET if phone else 1.0  # of the height; boot.js does the same for the first view
-    aspect = min(camera.image_width, width) / (seen * camera.image_height)
+    height = camera.image_height or 1  # a frame that is hidden again has none
+    aspect = (min(camera.image_width, width) or 1) / (seen * height)
     half = math.tan(0.5 * FIELD) * min(1.0, aspect) * seen
     away = np.subtract(position, look_at)
     away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))

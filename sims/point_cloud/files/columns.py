@@ -1,39 +1,56 @@
-"""What the formats have in common: named columns of numbers, and the one error."""
+"""What the formats have in common: a table of columns, and the one error."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from geometry.arrays import Array
-from sims.point_cloud.cloud import Colors
 
-Columns = Mapping[str, npt.NDArray[Any]]
-"""`x`, `y`, `z`, and perhaps `red`, `green`, `blue` and `intensity`, each (N,)."""
-
-NAMES = {
-    "x": "x", "y": "y", "z": "z",
-    "r": "red", "g": "green", "b": "blue", "red": "red", "green": "green", "blue": "blue",
-    "diffuse_red": "red", "diffuse_green": "green", "diffuse_blue": "blue",
-    "intensity": "intensity", "i": "intensity", "scalar_intensity": "intensity", "reflectance": "intensity",
-}  # fmt: skip
-"""What files call them, in lower case."""
+Values = npt.NDArray[Any]
+PREVIEWED = 3
+"""Lines of a file that are shown beside the choice of its columns."""
 
 
 class CloudFileError(ValueError):
     """A file that gives no cloud, and why, in words for whoever brought it."""
 
 
-def named(columns: Mapping[str, npt.NDArray[Any]]) -> Columns:
-    """The columns that mean something, under one name each."""
-    known = {NAMES[name.lower()]: values for name, values in columns.items() if name.lower() in NAMES}
-    missing = [name for name in "xyz" if name not in known]
-    if missing:
-        raise CloudFileError(f"It has no coordinate {', '.join(missing)}; its columns are {', '.join(columns)[:120]}.")
-    return known
+@dataclass(frozen=True, eq=False)
+class Table:
+    """What a file holds, before anything is taken for something.
+
+    `names` are those of its columns, empty where it has none; `values` (N,) each are of the type that the file
+    declares, None for a column of words. Where nothing is `declared`, all numbers are float64. `preview` has the first
+    lines' entries of each column. `sensor` (3,) is in the file's coordinates, `unit` and `height_unit` are keys of
+    `units.METRES` where the file names them.
+    """
+
+    names: Sequence[str]
+    values: Sequence[Values | None]
+    declared: bool
+    preview: Sequence[Sequence[str]]
+    sensor: Array | None = None
+    unit: str = ""
+    height_unit: str = ""
+    unit_from: str = ""
+
+    def __len__(self) -> int:
+        return next((len(values) for values in self.values if values is not None), 0)
+
+
+def declared(columns: Mapping[str, Values], **known: Any) -> Table:
+    """A table whose file declares names and types."""
+    preview = [[_spelled(value) for value in values[:PREVIEWED].tolist()] for values in columns.values()]
+    return Table(list(columns), list(columns.values()), True, preview, **known)
+
+
+def _spelled(value: Any) -> str:
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def enough(claimed: int, size: int, there: int, what: str = "points of {} bytes") -> None:
@@ -52,25 +69,6 @@ def fits(unpacked: int, largest: int) -> None:
         raise CloudFileError(f"Unpacked it is {unpacked / 1e6:,.0f} MB; at most {largest / 1e6:,.0f} MB are taken.")
 
 
-def colors_of(columns: Columns) -> Colors | None:
-    """Colours (N, 3) as 0–255, from that, from 0–65535 or from 0–1."""
-    if not {"red", "green", "blue"} <= set(columns):
-        return None
-    channels = np.stack([columns[name] for name in ("red", "green", "blue")], axis=1)
-    rgb = np.nan_to_num(channels.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)
-    largest = float(rgb.max(initial=0.0))
-    if largest > 255.0:
-        rgb *= 255.0 / 65535.0
-    elif largest <= 1.0 and np.issubdtype(channels.dtype, np.floating):
-        rgb *= 255.0
-    return np.clip(np.round(rgb), 0.0, 255.0).astype(np.uint8)
-
-
-def intensity_of(columns: Columns) -> Array | None:
-    """Intensities (N,) as shares of the largest, if they aren't between 0 and 1."""
-    if "intensity" not in columns:
-        return None
-    values = np.nan_to_num(columns["intensity"].astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)
-    values = np.maximum(values, 0.0)
-    largest = float(values.max(initial=0.0))
-    return values / largest if largest > 1.0 else values
+def unpacked_colors(bits: npt.NDArray[np.uint32]) -> dict[str, Values]:
+    """Red, green and blue of the four bytes that PCD keeps them in."""
+    return {name: ((bits >> shift) & 255).astype(np.uint8) for name, shift in (("red", 16), ("green", 8), ("blue", 0))}

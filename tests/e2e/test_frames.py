@@ -1,0 +1,154 @@
+"""Frames as course pages have them: hidden at first, small, resized, behind a proxy that lets no websocket through."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.course import CourseSite, heard, say
+from tests.e2e.learner import Learner
+
+RESIZE = "([width, height]) => Object.assign(document.querySelector('iframe'), { width, height })"
+DROP = """() => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File(["neither points nor words"], "notes.ply"));
+    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+}"""
+
+
+@pytest.fixture
+def course() -> Iterator[CourseSite]:
+    with CourseSite() as site:
+        yield site
+
+
+def looks_as_it_should(learner: Learner) -> bool:
+    """Whether viser's own camera is where the page works out that it should be."""
+    camera = learner.sockets.camera
+    view = np.array(learner.frame.evaluate("sim3.fit()"))
+    assert np.isfinite(view).all()
+    return bool(np.allclose([*camera["position"], *camera["look_at"]], view, atol=0.02))
+
+
+def resize(learner: Learner, width: int, height: int) -> None:
+    learner.page.evaluate(RESIZE, [width, height])
+
+
+def test_a_frame_that_is_shown_later_looks_at_its_scene_at_any_size(classroom: Classroom, course: CourseSite) -> None:
+    learner = classroom.enter()
+    course.show(learner, "camera/embed", before="<details><summary>More</summary>")
+    learner.page.wait_for_timeout(1500)
+    assert not heard(learner, "sim3:ready"), "nothing begins while there is no size"
+    resize(learner, 560, 315)
+    learner.page.get_by_text("More").click()
+    learner.enter_frame()
+    learner.until(lambda: looks_as_it_should(learner))
+    assert learner.control("combobox", "projection").is_visible()
+    at = learner.control("combobox", "projection").bounding_box()
+    frame = learner.page.locator("iframe").bounding_box()
+    assert at is not None
+    assert frame is not None
+    assert at["y"] + at["height"] <= frame["y"] + frame["height"], "the first control is in sight"
+
+    for size in ((700, 600), (390, 600)):
+        resize(learner, *size)
+        learner.until(lambda: looks_as_it_should(learner))
+
+    canvas = learner.frame.locator("canvas[data-engine]").bounding_box()
+    assert canvas is not None
+    learner.pull((canvas["x"] + 30, canvas["y"] + 30), 60, 10)
+    learner.until(lambda: not looks_as_it_should(learner))
+    distance = away(learner)
+    resize(learner, 700, 600)
+    learner.page.wait_for_timeout(1000)
+    assert not looks_as_it_should(learner), "a view that somebody chose stays"
+    assert away(learner) == pytest.approx(distance, rel=1e-3)
+
+
+def away(learner: Learner) -> float:
+    """Metres from the viewpoint to what is looked at: turning the view keeps them."""
+    camera = learner.sockets.camera
+    return float(np.linalg.norm(np.subtract(camera["position"], camera["look_at"])))
+
+
+def test_a_course_page_sets_the_page_of_a_sim_and_hears_what_it_needs(classroom: Classroom, course: CourseSite) -> None:
+    learner = classroom.enter()
+    course.show(learner, "euler-angles/embed?yaw=45")
+    learner.enter_frame()
+
+    def answer(kind: str, message: Any) -> Any:
+        count = len(heard(learner, kind))
+        say(learner, message)
+        return learner.until(lambda: heard(learner, kind)[count:][-1])
+
+    told = answer("sim3:state", {"type": "sim3:get", "solution": True})
+    assert told["solution"] == learner.solved()
+    assert "solution" not in answer("sim3:state", {"type": "sim3:get"})
+    (error,) = answer("sim3:error", {"type": "sim3:set", "params": {"yaw": 999}})["errors"]
+    assert (error["parameter"], error["received"]) == ("yaw", "999")
+    assert "-180 to 180" in error["allowed"]
+    for name, wrong in (("theme", "blue"), ("controls", "no"), ("view", [1, 2, 3])):
+        (error,) = answer("sim3:error", {"type": "sim3:set", name: wrong})["errors"]
+        assert error["parameter"] == name
+
+    view = [4.0, 1.0, 2.0, 0.0, 0.5, 0.0]
+    say(learner, {"type": "sim3:set", "view": view, "params": {"yaw": 60}})
+    learner.sees(yaw=60)
+    learner.until(lambda: near(learner, view))
+    assert "view=4,1,2,0,0.5,0" in learner.address
+
+    height = learner.until(lambda: heard(learner, "sim3:height")[-1]["height"])
+    assert 480 <= height <= 900
+    posted = learner.page.evaluate("heard")
+    assert {"subject": "lti.capabilities"}.items() <= next(m for m in posted if m.get("subject")).items()
+    assert any(m.get("context") == "h5p" and m["action"] == "hello" for m in posted)
+    say(learner, {"subject": "lti.capabilities.response", "supported_messages": [{"subject": "lti.frameResize"}]})
+    say(learner, {"context": "h5p", "action": "hello"})
+    learner.until(lambda: said(learner, subject="lti.frameResize", height=height))
+    learner.until(lambda: said(learner, context="h5p", action="resize", scrollHeight=height))
+
+    say(learner, {"type": "sim3:set", "theme": "dark", "controls": False, "params": {"roll": -20}})
+    learner.until(lambda: len(heard(learner, "sim3:ready")) == 2)
+    learner.enter_frame()
+    learner.sees(yaw=60, roll=-20)
+    assert learner.frame.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert not learner.frame.get_by_role("slider").count()
+    learner.until(lambda: near(learner, view))
+
+
+def near(learner: Learner, view: list[float]) -> bool:
+    camera = learner.sockets.camera
+    return bool(np.allclose([*camera["position"], *camera["look_at"]], view, atol=1e-3))
+
+
+def said(learner: Learner, **words: Any) -> bool:
+    """Whether the course page was told something of that kind."""
+    return any(words.items() <= message.items() for message in learner.page.evaluate("heard"))
+
+
+@pytest.mark.parametrize("reason", ["This server saw Host “backend:8000”, but the page comes from elsewhere.", ""])
+def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom, reason: str) -> None:
+    learner = classroom.enter()
+    learner.witness.expect("WebSocket")
+    learner.page.route_web_socket(
+        re.compile("/s/"), lambda socket: socket.close(code=4403 if reason else 1011, reason=reason)
+    )
+    learner.page.goto(f"{learner.url}/sims/quaternion/embed")
+    trouble = learner.page.get_by_role("alert").filter(has_text="can’t reach its server")
+    trouble.wait_for()
+    assert (reason or "Upgrade and Connection") in (trouble.text_content() or "")
+
+
+def test_a_bad_file_that_is_dropped_is_spoken_of_where_it_can_be_seen(classroom: Classroom) -> None:
+    learner = classroom.open("point-cloud/embed", size={"width": 880, "height": 600})
+    learner.witness.expect("status of 422")
+    assert not learner.page.locator(".s3-bring").is_visible()
+    learner.page.evaluate(DROP)
+    notice = learner.page.locator(".s3-notice").filter(has_text="Nothing has changed")
+    notice.wait_for()
+    assert "notes.ply" in (notice.text_content() or "")
