@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import partial
 
 from sims.kit.sim import Action, Files, Objective, Sim
-from sims.point_cloud import library, model
+from sims.point_cloud import actions, library
 from sims.point_cloud.datasets import DATASETS, dataset
 from sims.point_cloud.files import FORMATS
-from sims.point_cloud.model import OWN, VIEWS, CloudParams, CloudSolution
-from sims.point_cloud.pictures import panes
+from sims.point_cloud.panes import panes
+from sims.point_cloud.params import OWN, VIEWS, CloudParams, view_of
+from sims.point_cloud.readouts import describe, preview, readouts
 from sims.point_cloud.scene import CloudScene
-from sims.point_cloud.solving import pick, ply, solve
-from sims.point_cloud.words import describe, preview, readouts
+from sims.point_cloud.solution import CloudSolution, ply, solve
 
 __all__ = ["SIM", "CloudParams", "CloudSolution", "solve"]
 
@@ -33,13 +33,13 @@ SIM = Sim(
     readouts=readouts,
     describe=describe,
     view=VIEWS["room"],
-    view_of=model.view_of,
+    view_of=view_of,
     panes=panes,
     actions=(
-        Action("play", "Play", "The process from its start; without one, growing voxels", model.play),
-        Action("step", "Next step", "The process one step on; from the last one back to its start", model.next_step),
+        Action("play", "Play", "The process from its start; without one, growing voxels", actions.play),
+        Action("step", "Next step", "The process one step on; from the last one back to its start", actions.next_step),
     ),
-    handles={"/cloud": pick},
+    handles={"/cloud": actions.pick},
     states={
         "street": {"dataset": "street", "color": "intensity"},
         "street without colours": {"dataset": "street"},

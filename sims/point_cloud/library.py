@@ -36,7 +36,6 @@ KEPT = 4
 """Clouds of the folder that are kept when nobody looks at them, and ways in which a learner's file was read."""
 AGAIN = 60.0
 """Seconds after which a file is tried again over which the child process failed; one that was refused stays so."""
-
 Choice = tuple[str, str]
 """What columns and units are taken for: a letter for each of the first columns (`files.meaning.LETTERS`), a unit."""
 _brought: WeakValueDictionary[str, Brought] = WeakValueDictionary()

@@ -15,7 +15,7 @@ from geometry.clouds import Indices
 from sims.kit.progress import begins, goes_on
 from sims.kit.sim import DRAWN
 from sims.point_cloud.cloud import Cloud
-from sims.point_cloud.work import normals, parts, spacing
+from sims.point_cloud.derived import normals, parts, spacing
 
 UP = np.array([0.0, 0.0, 1.0])
 STEEPEST = math.radians(20.0)

@@ -14,8 +14,9 @@ from sims.kit.scene.nodes import Arrows, Cloud, Node
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import View
 from sims.kit.types import ORIGIN
-from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected
-from sims.point_cloud.shown import Layer
+from sims.point_cloud.layers import Layer
+from sims.point_cloud.params import VIEWS, CloudParams
+from sims.point_cloud.solution import CloudSolution, Selected
 
 PIXELS = 350.0
 """Pixels, about, that the radius of the first view takes."""

@@ -13,13 +13,14 @@ from scipy.spatial import cKDTree
 from geometry import clouds, se3
 from sims.kit.palette import before_film, before_tone_mapping
 from sims.kit.viewer import Look
-from sims.point_cloud import SIM, CloudParams, processes, solve, work
+from sims.point_cloud import SIM, CloudParams, derived, processes, solve
 from sims.point_cloud import colors as colors_to_send
+from sims.point_cloud.actions import pick, play
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.files import read
-from sims.point_cloud.model import VIEWS, play
-from sims.point_cloud.solving import pick, ply, shown_points
+from sims.point_cloud.params import VIEWS
+from sims.point_cloud.solution import ply, shown_points
 from tests.server import Rig
 
 
@@ -124,8 +125,8 @@ def test_points_have_more_than_one_colour(rig: Rig, color: str) -> None:
 def test_normals_point_towards_the_sensor(name: str) -> None:
     cloud = dataset(name)
     assert cloud.sensor is not None
-    thin = work.thinned(cloud, 0.1)
-    vectors = work.normals(thin, 16)
+    thin = derived.thinned(cloud, 0.1)
+    vectors = derived.normals(thin, 16)
     assert thin.sensor is not None
     to_sensor = thin.sensor - thin.points
     defined = vectors.any(axis=1)
@@ -147,7 +148,7 @@ def test_arrows_of_normals_start_at_points_and_go_along_them(rig: Rig, dataset: 
     vectors = arrows[:, 1] - arrows[:, 0]
     lengths = np.linalg.norm(vectors, axis=1)
     np.testing.assert_allclose(lengths, solve(params).drawn.arrow, rtol=1e-3)
-    np.testing.assert_allclose(vectors / lengths[:, None], work.normals(thin, 16)[rows], atol=1e-3)
+    np.testing.assert_allclose(vectors / lengths[:, None], derived.normals(thin, 16)[rows], atol=1e-3)
     assert rig.model.node("/cloud/normals").props["head_length"] < 0.5 * lengths.min()
     show(rig, dataset=dataset, voxel_size=voxel)
     assert not rig.model.visible("/cloud/normals")
@@ -171,10 +172,10 @@ def test_the_surface_variation_is_the_share_of_the_least_variance(rig: Rig) -> N
 
 def test_what_has_no_surface_is_grey_and_not_counted() -> None:
     line = Cloud("line", np.outer(np.arange(30.0), [1.0, 0.0, 0.0]))
-    assert np.isnan(work.local(line, 8).variation).all()
-    grey = work.painted(line, line, "variation", 8)
+    assert np.isnan(derived.local(line, 8).variation).all()
+    grey = derived.painted(line, line, "variation", 8)
     assert (grey == colors_to_send.of_rgb(np.array([colors_to_send.GREY], np.uint8))).all()
-    tally = work.tally(line, line, "variation", 8)
+    tally = derived.tally(line, line, "variation", 8)
     assert tally is not None
     assert not tally.counts.any()
 
@@ -332,7 +333,7 @@ def test_the_registration_comes_nearer(method: str) -> None:
 def test_the_error_is_the_sum_over_the_pairs() -> None:
     params = CloudParams(dataset="two-scans", process="register", step=2, voxel_size=0.1)
     cloud = dataset("two-scans")
-    way = processes.course(cloud, work.thinned(cloud, 0.1), "plane", 16, 0.0)
+    way = processes.course(cloud, derived.thinned(cloud, 0.1), "plane", 16, 0.0)
     found = solve(params).registration
     assert way is not None
     assert found is not None

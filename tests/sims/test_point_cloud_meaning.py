@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.derived import local, thinned
 from sims.point_cloud.files import CloudFileError, read
 from sims.point_cloud.files.meaning import letters_of, roles_of
-from sims.point_cloud.model import CloudParams
-from sims.point_cloud.work import local, thinned
+from sims.point_cloud.params import CloudParams
 
 LARGEST = 60_000_000
 THREE = [[1.5, 2.5, 3.5], [4.5, 5.5, 6.5], [7.5, 8.25, 9.75]]

@@ -10,8 +10,9 @@ from sims.kit.readout import THIN, Formula, Note, Readout, Table, figure, mathml
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import IGNORED, ROLES
 from sims.point_cloud.library import UPLOAD
-from sims.point_cloud.model import MOST_COLUMNS, OWN, CloudParams, CloudSolution
+from sims.point_cloud.params import MOST_COLUMNS, OWN, CloudParams
 from sims.point_cloud.processes import Registered
+from sims.point_cloud.solution import CloudSolution
 
 SENSORS = {
     "room": "a colour scanner at two places in a room",

@@ -16,7 +16,7 @@ from sims.kit.palette import LIGHT, rgb
 from sims.kit.sim import View
 from sims.point_cloud import colors, processes
 from sims.point_cloud.cloud import Cloud, Colors
-from sims.point_cloud.work import Tally, normals, painted, parts
+from sims.point_cloud.derived import Tally, normals, painted, parts
 
 MOST_ARROWS = 1_200
 """Normals that are drawn: one in each cell of a grid that is as fine as that allows."""

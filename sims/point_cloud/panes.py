@@ -15,9 +15,10 @@ from sims.kit.plot import Plot, room
 from sims.kit.readout import THIN, figure, quantity
 from sims.point_cloud import colors
 from sims.point_cloud.cloud import Colors
-from sims.point_cloud.model import CloudParams, CloudSolution
-from sims.point_cloud.shown import MARKS
-from sims.point_cloud.work import BINS, Tally
+from sims.point_cloud.derived import BINS, Tally
+from sims.point_cloud.layers import MARKS
+from sims.point_cloud.params import CloudParams
+from sims.point_cloud.solution import CloudSolution
 
 WIDTH, HEIGHT, LEFT, END, FLOOR, TOP = 320, 112, 10, 310, 84, 8
 NAMES = {"height": "Height", "intensity": "Intensity", "variation": "Surface variation"}

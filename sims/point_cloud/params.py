@@ -1,22 +1,20 @@
-"""State and solution: which cloud, how it is thinned and coloured, and which process has been taken how far."""
+"""Parameters of the sim."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
-from geometry.arrays import Array
 from sims.kit.params import Params, choice, letters, number, spell, switch, text
-from sims.kit.sim import DRAWN, Step, View
+from sims.kit.sim import View
 from sims.point_cloud import library, processes
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import ROLES, letters_of
-from sims.point_cloud.processes import MOST_STEPS, Clusters, Ground, Outliers, Registered, Surface
-from sims.point_cloud.shown import Drawn, whole
+from sims.point_cloud.layers import whole
+from sims.point_cloud.processes import MOST_STEPS
 
 MOST_POINTS = 10_000_000
 VIEWS = {
@@ -33,7 +31,6 @@ REACH = {"voxel_size": 1.0, "distance": 2.0}
 LONGEST = 100_000.0
 KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
 """Parameters that leave every shown point its index."""
-
 WHAT_DISTANCE_IS = {
     "none": "Distance of the process",
     "ground": "Half thickness of the ground",
@@ -260,79 +257,6 @@ class CloudParams(Params):
         if self.process != "outliers":
             others -= {"neighbors", "deviations"}
         return bool(others - {"step", "method", "distance"} if self.process == "register" else others)
-
-
-@dataclass(frozen=True, eq=False)
-class Selected:
-    """One point: what was measured there, and what its neighbours say: normal and surface variation, or null."""
-
-    index: int
-    position: Array
-    color: Array | None
-    normal: Array | None
-    intensity: float | None
-    variation: float | None
-
-
-@dataclass(frozen=True, eq=False)
-class Source:
-    """How a file was read: its columns' names, what each was taken for, and its unit; and how many points it lost.
-
-    Its points in metres are `origin` away from where they are shown. `notes` say the rest in words.
-    """
-
-    name: str
-    columns: list[str]
-    taken_for: list[str]
-    unit: str
-    origin: Array | None
-    dropped: int
-    strays: int
-    left_out: int
-    notes: list[str]
-
-
-@dataclass(frozen=True, eq=False)
-class CloudSolution:
-    """What the sim knows of the shown points."""
-
-    points_in: int
-    points_out: int
-    minimum: Array
-    maximum: Array
-    dimensions: Array
-    selected: Selected | None
-    colored_by: str
-    """What the colours say: the dataset may not have what was asked for."""
-    source: Source | None
-    """What a file was taken for; null of a built-in dataset."""
-    ground: Ground | None
-    clusters: Clusters | None
-    outliers: Outliers | None
-    registration: Registered | None
-    surface: Surface | None
-    trouble: str
-    """In words, why there is no cloud."""
-    drawn: Drawn = field(metadata=DRAWN)
-
-
-def play(p: CloudParams) -> Iterator[Step]:
-    """The process from its start; without one, the cells grow."""
-    if p.process == "none":
-        yield Step({"voxel_size": 0.0}, 0.0)
-        yield Step({"voxel_size": 0.25 * p.bounds("voxel_size")[1]}, 4.0)
-        return
-    for step in range(MOST_STEPS + 1):
-        if step > p.last_step:  # which may be known only after the first
-            return
-        yield Step({"step": step}, 0.0)
-        yield Step({"step": step}, 0.25 if p.process == "register" else 1.0)
-
-
-def next_step(p: CloudParams) -> dict[str, Any]:
-    """One step on; from the last one back to the start."""
-    low, high = p.bounds("step")
-    return {"step": p.step + 1 if p.step < high else low}
 
 
 def view_of(p: CloudParams) -> View:

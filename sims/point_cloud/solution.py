@@ -10,13 +10,70 @@ import numpy as np
 from geometry import clouds, se3
 from geometry.arrays import Array
 from sims.kit.progress import begins
-from sims.point_cloud import library, processes, shown
+from sims.kit.sim import DRAWN
+from sims.point_cloud import layers, library, processes
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
+from sims.point_cloud.derived import LOCAL, colored_by, local, tally, thinned
 from sims.point_cloud.files import ply_bytes
-from sims.point_cloud.model import VIEWS, CloudParams, CloudSolution, Selected, Source
-from sims.point_cloud.shown import NO_ARROWS, Drawn, Layer, layer
-from sims.point_cloud.work import LOCAL, colored_by, local, tally, thinned
+from sims.point_cloud.layers import NO_ARROWS, Drawn, Layer, layer
+from sims.point_cloud.params import VIEWS, CloudParams
+from sims.point_cloud.processes import Clusters, Ground, Outliers, Registered, Surface
+
+
+@dataclass(frozen=True, eq=False)
+class Selected:
+    """One point: what was measured there, and what its neighbours say: normal and surface variation, or null."""
+
+    index: int
+    position: Array
+    color: Array | None
+    normal: Array | None
+    intensity: float | None
+    variation: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """How a file was read: its columns' names, what each was taken for, and its unit; and how many points it lost.
+
+    Its points in metres are `origin` away from where they are shown. `notes` say the rest in words.
+    """
+
+    name: str
+    columns: list[str]
+    taken_for: list[str]
+    unit: str
+    origin: Array | None
+    dropped: int
+    strays: int
+    left_out: int
+    notes: list[str]
+
+
+@dataclass(frozen=True, eq=False)
+class CloudSolution:
+    """What the sim knows of the shown points."""
+
+    points_in: int
+    points_out: int
+    minimum: Array
+    maximum: Array
+    dimensions: Array
+    selected: Selected | None
+    colored_by: str
+    """What the colours say: the dataset may not have what was asked for."""
+    source: Source | None
+    """What a file was taken for; null of a built-in dataset."""
+    ground: Ground | None
+    clusters: Clusters | None
+    outliers: Outliers | None
+    registration: Registered | None
+    surface: Surface | None
+    trouble: str
+    """In words, why there is no cloud."""
+    drawn: Drawn = field(metadata=DRAWN)
+
 
 MOST_LABELS = 7
 
@@ -83,7 +140,7 @@ def marked(cloud: Cloud, thin: Cloud, kind: str, mark: str, result: object) -> L
 
 
 def _none(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
-    return Result(plain(p, cloud, thin), shown.nothing(cloud, thin))
+    return Result(plain(p, cloud, thin), layers.nothing(cloud, thin))
 
 
 def _ground(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
@@ -109,7 +166,7 @@ def _clusters(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
     result.clusters = found
     result.base = marked(cloud, thin, "rest", "grey", found)
     result.marked = marked(cloud, thin, "marked", "clusters", found)
-    result.names = shown.cluster_names(found, thin, MOST_LABELS - 4)
+    result.names = layers.cluster_names(found, thin, MOST_LABELS - 4)
     return result
 
 
@@ -149,9 +206,9 @@ PROCESSES = {
 
 def _extent(result: Result) -> tuple[Array, Array]:
     """Of all points that are shown; where none is left, of nothing at the origin."""
-    ends = [shown.extent(result.base)] if len(result.base.rows) else []
+    ends = [layers.extent(result.base)] if len(result.base.rows) else []
     if len(result.marked.rows) and result.registration is None:
-        ends.append(shown.extent(result.marked))
+        ends.append(layers.extent(result.marked))
     elif len(result.marked.rows):
         ends.append(clouds.bounds(se3.apply(result.T, result.marked.points)))
     if not ends:
@@ -184,21 +241,14 @@ def _selected(p: CloudParams, thin: Cloud, result: Result) -> Selected | None:
 def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array, high: Array) -> Drawn:
     base, over, length = NO_ARROWS, NO_ARROWS, 1.0
     if p.show_normals:
-        length = shown.arrow_length(thin, p.voxel_size)
-        base, over = (shown.arrows(thin, p.neighbors, p.voxel_size, one) for one in (result.base, result.marked))
-    ground = None if result.ground is None else shown.patch(result.ground, low, high)
+        length = layers.arrow_length(thin, p.voxel_size)
+        base, over = (layers.arrows(thin, p.neighbors, p.voxel_size, one) for one in (result.base, result.marked))
+    ground = None if result.ground is None else layers.patch(result.ground, low, high)
     return Drawn(
         result.base, result.marked, result.T, base, over, length, ground, result.surface, result.names,
-        VIEWS[p.dataset] if p.dataset in VIEWS else shown.whole(cloud), cloud,
+        VIEWS[p.dataset] if p.dataset in VIEWS else layers.whole(cloud), cloud,
         tally(cloud, thin, colored_by(cloud, p.color), _neighbors(p)),
     )  # fmt: skip
-
-
-def pick(p: CloudParams, ray: tuple[float, ...]) -> dict[str, int | None]:
-    """Select the shown point that a ray (origin, direction) points at, or none."""
-    points = shown_points(p).points
-    found = clouds.pick(points, ray[:3], ray[3:]) if len(points) else None
-    return {"selected": None if found is None else found.index}
 
 
 def shown_points(p: CloudParams) -> Cloud:
