@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sims.camera.params import HEIGHT, WIDTH, CameraParams
-from sims.camera.solution import CameraSolution
+from sims.camera.solution import CameraSolution, NamedPoint, VanishingPoint
 from sims.camera.world import ROLES, TITLES
 from sims.kit.palette import Palette
 from sims.kit.pane import Pane, Picture
@@ -33,7 +33,7 @@ def panes(p: CameraParams, s: CameraSolution, palette: Palette) -> Sequence[Pane
         for meet in s.vanishing:
             _vanishing(picture, s, meet)
     for point in s.points:
-        _point(picture, point, chosen=point["name"] == p.selected)
+        _point(picture, point, chosen=point.name == p.selected)
     if s.frustum is not None:
         picture.handle("principal", (p.cx, p.cy), "Principal point", "c")
     return (picture.pane(_note(p, s)),)
@@ -45,26 +45,24 @@ def _pixel_axes(picture: Picture) -> None:
         picture.text(at, letter)
 
 
-def _vanishing(picture: Picture, s: CameraSolution, meet: Any) -> None:
+def _vanishing(picture: Picture, s: CameraSolution, meet: VanishingPoint) -> None:
     """A cross where parallels meet, with two edges drawn on to it, or a mark at the border."""
-    if meet["in_image"]:
-        u, v = meet["pixel"]
-        ends = [s.point(name)["pixel"] for name in TOWARDS[meet["name"]]]
-        picture.strokes([(*end, u, v) for end in ends if end], meet["role"], width=1, dash="3 5")
-        picture.cross(meet["pixel"], meet["role"])
-        picture.text((u, v - 18.0), meet["name"], meet["role"], anchor="middle", size=24)
-    elif meet["homogeneous"] is not None:
-        picture.outside(
-            meet["homogeneous"], meet["role"], meet["name"], title=f"Vanishing point of what runs {meet['name']}"
-        )
+    if meet.pixel is not None and meet.in_image:
+        u, v = meet.pixel
+        ends = [s.point(name).pixel for name in TOWARDS[meet.name]]
+        picture.strokes([(*end, u, v) for end in ends if end], meet.role, width=1, dash="3 5")
+        picture.cross(meet.pixel, meet.role)
+        picture.text((u, v - 18.0), meet.name, meet.role, anchor="middle", size=24)
+    elif meet.homogeneous is not None:
+        picture.outside(meet.homogeneous, meet.role, meet.name, title=f"Vanishing point of what runs {meet.name}")
 
 
-def _point(picture: Picture, point: Any, *, chosen: bool) -> None:
-    name, pixel = point["name"], point["pixel"]
+def _point(picture: Picture, point: NamedPoint, *, chosen: bool) -> None:
+    name, pixel = point.name, point.pixel
     if pixel is None:
         return
     title = TITLES[name]
-    if point["in_image"]:
+    if point.in_image:
         picture.point(name, pixel, title, chosen=chosen, label=title.lower() if chosen else "")
     else:
         words = title.lower() if chosen else ""
@@ -76,8 +74,8 @@ def _note(p: CameraParams, s: CameraSolution) -> str:
     point = s.point(p.selected)
     if s.frustum is None:
         return "⚠ no scale, no picture"
-    if point["pixel"] is None:
+    if point.pixel is None:
         return f"⚠ {TITLES[p.selected].lower()} is behind"
-    u, v = point["pixel"]
-    where = "" if point["in_image"] else ", outside"
+    u, v = point.pixel
+    where = "" if point.in_image else ", outside"
     return f"({figure(u, 1)}, {figure(v, 1)}){THIN}px{where}"

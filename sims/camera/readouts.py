@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from sims.camera.params import CameraParams
-from sims.camera.solution import CameraSolution
+from sims.camera.solution import CameraSolution, NamedPoint
 from sims.camera.world import NAMES, TITLES
 from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
@@ -35,8 +34,8 @@ def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
         yield Formula("Field of view, across", symbol("α", "x"), mathml(s.fov_x, 2), "°")
         yield Formula("Field of view, down", symbol("α", "y"), mathml(s.fov_y, 2), "°")
     yield from _taken_apart(s)
-    if s.subject["height"] is not None:
-        yield Formula("Height of the house in the picture", symbol("h"), mathml(s.subject["height"], 1), "px")
+    if s.subject.height is not None:
+        yield Formula("Height of the house in the picture", symbol("h"), mathml(s.subject.height, 1), "px")
     yield _table(p, s)
 
 
@@ -47,7 +46,7 @@ def _status(p: CameraParams, s: CameraSolution) -> Iterator[Note]:
         )
     elif s.scale_depth is not None:
         yield Note(f"Every point is divided by one depth, {quantity(s.scale_depth, 'm', 2)}: {BY[p.projection]}.")
-    hidden = sum(point["depth"] <= 0.0 for point in s.points)
+    hidden = sum(point.depth <= 0.0 for point in s.points)
     if hidden == len(s.points):
         yield Note("All points are behind the camera: there are no pixels.", "warn")
     elif hidden:
@@ -59,33 +58,33 @@ def _status(p: CameraParams, s: CameraSolution) -> Iterator[Note]:
 def _together(p: CameraParams, s: CameraSolution) -> Iterator[Note]:
     """Points that the picture can't tell from the chosen one."""
     chosen = s.point(p.selected)
-    if chosen["pixel"] is None:
+    if chosen.pixel is None:
         return
-    u, v = chosen["pixel"]
+    u, v = chosen.pixel
     for point in s.points:
-        other = point["pixel"]
+        other = point.pixel
         if other and point is not chosen and abs(other[0] - u) < SAME and abs(other[1] - v) < SAME:
-            yield Note(f"{TITLES[point['name']]} has the same pixel: both lie on one line of sight.")
+            yield Note(f"{TITLES[point.name]} has the same pixel: both lie on one line of sight.")
 
 
 def _worked(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
     """The chosen point, from the world to its pixel."""
     point = s.point(p.selected)
-    yield Formula(f"{TITLES[p.selected]}, in the world", symbol("X", "w"), row(point["world"]), "m")
-    yield Formula("In the camera's axes: R X + t", symbol("X", "c"), row(point["camera"]), "m")
-    if point["pixel"] is None:
+    yield Formula(f"{TITLES[p.selected]}, in the world", symbol("X", "w"), row(point.world), "m")
+    yield Formula("In the camera's axes: R X + t", symbol("X", "c"), row(point.camera), "m")
+    if point.pixel is None:
         if s.frustum is not None:
-            depth = quantity(point["depth"], "m")
+            depth = quantity(point.depth, "m")
             yield Note(f"Depth {depth}: not in front of the camera, so there is no pixel.", "warn")
         return
-    x, y, z = point["camera"]
+    x, y, z = point.camera
     divisor = s.scale_depth or z
     words = "its depth" if s.scale_depth is None else "the one depth"
     yield Formula(
         f"Normalised: divided by {words}, {quantity(divisor, 'm')}", symbol("x"), row((x / divisor, y / divisor))
     )
-    outside = "" if point["in_image"] else ", outside the picture"
-    yield Formula(f"Pixel: K x{outside}", symbol("p"), row(point["pixel"], 2), "px")
+    outside = "" if point.in_image else ", outside the picture"
+    yield Formula(f"Pixel: K x{outside}", symbol("p"), row(point.pixel, 2), "px")
 
 
 def _taken_apart(s: CameraSolution) -> Iterator[Readout]:
@@ -95,27 +94,27 @@ def _taken_apart(s: CameraSolution) -> Iterator[Readout]:
             yield Note("This P has no centre to find: all its lines of sight are parallel to the optical axis.")
         return
     off = max(
-        float(np.abs(s.decomposed[name] - value).max())
+        float(np.abs(getattr(s.decomposed, name) - value).max())
         for name, value in (("K", s.K), ("R", s.R), ("center", s.center))
     )
     verdict = "the same as above" if off < 1e-6 else f"off by {off:.1e}".replace("-", "−")
     yield Note(f"Check: P taken apart again (RQ) gives K, R and C, {verdict}.")
-    yield Formula("K from P", symbol("K", "P"), mathml(s.decomposed["K"], 1))
-    yield Formula("C from P", symbol("C", "P"), row(s.decomposed["center"].tolist()), "m")
+    yield Formula("K from P", symbol("K", "P"), mathml(s.decomposed.K, 1))
+    yield Formula("C from P", symbol("C", "P"), row(s.decomposed.center.tolist()), "m")
 
 
 def _table(p: CameraParams, s: CameraSolution) -> Table:
     rows: list[tuple[str, ...]] = [("point", "depth", "u", "v")]
     for point in s.points:
-        rows.append((TITLES[point["name"]], figure(point["depth"], 2), *_pixel(point)))
+        rows.append((TITLES[point.name], figure(point.depth, 2), *_pixel(point)))
     return Table("Points: depth in metres, pixel; in brackets what is outside the picture", rows, NAMES, p.selected)
 
 
-def _pixel(point: Any) -> tuple[str, str]:
-    if point["pixel"] is None:
-        return ("behind", "–") if point["depth"] <= 0.0 else ("–", "–")
-    u, v = (figure(value, 1) for value in point["pixel"])
-    return (u, v) if point["in_image"] else (f"({u})", f"({v})")
+def _pixel(point: NamedPoint) -> tuple[str, str]:
+    if point.pixel is None:
+        return ("behind", "–") if point.depth <= 0.0 else ("–", "–")
+    u, v = (figure(value, 1) for value in point.pixel)
+    return (u, v) if point.in_image else (f"({u})", f"({v})")
 
 
 def describe(p: CameraParams, s: CameraSolution) -> str:
@@ -125,11 +124,11 @@ def describe(p: CameraParams, s: CameraSolution) -> str:
     point = s.point(p.selected)
     if s.frustum is None:
         seen = "no picture, its scale isn't in front"
-    elif point["pixel"] is None:
+    elif point.pixel is None:
         seen = "behind the camera, no pixel"
     else:
-        u, v = (figure(value, 0) for value in point["pixel"])
-        seen = f"at pixel {u}, {v}{'' if point['in_image'] else ', outside the picture'}"
+        u, v = (figure(value, 0) for value in point.pixel)
+        seen = f"at pixel {u}, {v}{'' if point.in_image else ', outside the picture'}"
     kind = "weak perspective" if p.projection == "weak" else p.projection
     return (
         f"{kind.capitalize()} camera at {x}, {y}, {z} m, {angles}; focal length {quantity(p.fx, 'px', 0)};"

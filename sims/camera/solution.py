@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +15,50 @@ from geometry.arrays import Array
 from geometry.camera import Camera, pan_tilt_roll
 from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
 from sims.camera.params import HEIGHT, WIDTH, CameraParams, Pixel
-from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES
+from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES, Place, Role
 from sims.kit.frame import inside
+
+
+@dataclass(frozen=True)
+class NamedPoint:
+    """A named point: in the world, in the camera's axes, and in the picture, as far as it has a pixel."""
+
+    name: str
+    world: Place
+    camera: list[float]
+    depth: float
+    pixel: Pixel | None
+    in_image: bool
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The house's middle; `height`: pixels from its ground to its ridge."""
+
+    world: Place
+    depth: float
+    pixel: Pixel | None
+    height: float | None
+
+
+@dataclass(frozen=True)
+class Decomposed:
+    """What P alone tells."""
+
+    K: Array
+    R: Array
+    center: Array
+
+
+@dataclass(frozen=True)
+class VanishingPoint:
+    """Where parallels of one direction of the street meet in the picture."""
+
+    name: str
+    role: Role
+    homogeneous: list[float] | None
+    pixel: Pixel | None
+    in_image: bool
 
 
 @dataclass(frozen=True)
@@ -33,16 +74,15 @@ class CameraSolution:
     """Quaternion of the camera in the world."""
     fov_x: float
     fov_y: float
-    points: Sequence[Mapping[str, Any]]
+    points: Sequence[NamedPoint]
     mean_depth: float
     scale_depth: float | None
     """The one depth by which a picture without perspective divides."""
-    subject: Mapping[str, Any]
-    """`world`, `depth` and `pixel` of the house's middle; `height`: pixels from its ground to its ridge."""
-    decomposed: Mapping[str, Any] | None
-    """`K`, `R` and `center`, found from P alone; an affine P has no centre."""
-    vanishing: Sequence[Mapping[str, Any]]
-    """`name`, `role`, `homogeneous`, `pixel` and `in_image` for each direction of the street."""
+    subject: Subject
+    decomposed: Decomposed | None
+    """None of an affine P, which has no centre."""
+    vanishing: Sequence[VanishingPoint]
+    """For each direction of the street."""
     wires: Array
     """Edges (n, 2, 2) in the picture, in pixels, cut off at its frame and at the camera's plane."""
     shown: npt.NDArray[np.intp]
@@ -54,7 +94,7 @@ class CameraSolution:
     grip: Array
     """Where the grip stands that moves the camera: above it, where nothing hides it."""
 
-    def point(self, name: str) -> Mapping[str, Any]:
+    def point(self, name: str) -> NamedPoint:
         """One of `points`."""
         return self.points[NAMES.index(name)]
 
@@ -153,45 +193,38 @@ def _eye(p: CameraParams, camera: Camera, scale: float | None) -> tuple[Eye | No
     return weak_perspective(camera, POINTS) if p.projection == "weak" else AffineCamera(camera, scale), scale
 
 
-def _points(in_camera: Array, pixels: Array) -> tuple[dict[str, Any], ...]:
-    found = []
-    for name, axes, (u, v) in zip(NAMES, in_camera.tolist(), pixels.tolist(), strict=True):
-        pixel = (u, v) if u == u else None
-        found.append(
-            {
-                "name": name, "world": PLACES[name], "camera": axes, "depth": axes[2], "pixel": pixel,
-                "in_image": inside(u, v, WIDTH, HEIGHT),
-            }
-        )  # fmt: skip
-    return tuple(found)
+def _points(in_camera: Array, pixels: Array) -> tuple[NamedPoint, ...]:
+    rows = zip(NAMES, in_camera.tolist(), pixels.tolist(), strict=True)
+    return tuple(
+        NamedPoint(name, PLACES[name], axes, axes[2], _existing(u, v), inside(u, v, WIDTH, HEIGHT))
+        for name, axes, (u, v) in rows
+    )
 
 
-def _subject(pixels: Array, depth: float) -> dict[str, Any]:
+def _existing(u: float, v: float) -> Pixel | None:
+    return (u, v) if u == u else None
+
+
+def _subject(pixels: Array, depth: float) -> Subject:
     (u, v), ground, ridge = pixels.tolist()
     height = math.dist(ground, ridge)
-    return {
-        "world": MIDDLE, "depth": depth, "pixel": (u, v) if u == u else None,
-        "height": height if height == height else None,
-    }  # fmt: skip
+    return Subject(MIDDLE, depth, _existing(u, v), height if height == height else None)
 
 
-def _decomposed(camera: Camera) -> dict[str, Array]:
+def _decomposed(camera: Camera) -> Decomposed:
     parts = decompose(camera.P)
-    return {"K": parts.K, "R": parts.R, "center": parts.center}
+    return Decomposed(parts.K, parts.R, parts.center)
 
 
-def _vanishing(P: Array) -> tuple[dict[str, Any], ...]:
-    found = []
+def _vanishing(P: Array) -> tuple[VanishingPoint, ...]:
     homogeneous, pixels = vanishing_points(P, WAYS)
-    for (name, (role, _)), place, (u, v) in zip(DIRECTIONS.items(), homogeneous.tolist(), pixels.tolist(), strict=True):
-        exists = place[0] == place[0]
-        found.append(
-            {
-                "name": name, "role": role, "homogeneous": place if exists else None,
-                "pixel": (u, v) if u == u else None, "in_image": inside(u, v, WIDTH, HEIGHT),
-            }
-        )  # fmt: skip
-    return tuple(found)
+    rows = zip(DIRECTIONS.items(), homogeneous.tolist(), pixels.tolist(), strict=True)
+    return tuple(
+        VanishingPoint(
+            name, role, place if place[0] == place[0] else None, _existing(u, v), inside(u, v, WIDTH, HEIGHT)
+        )
+        for (name, (role, _)), place, (u, v) in rows
+    )
 
 
 def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, npt.NDArray[np.intp]]:
@@ -206,14 +239,14 @@ def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, npt.NDArra
 
 def _frustum(
     p: CameraParams, camera: Camera, scale: float | None, depth: float,
-    points: Sequence[Mapping[str, Any]], in_camera: Array, wires: Array, vanishing: Sequence[Mapping[str, Any]],
+    points: Sequence[NamedPoint], in_camera: Array, wires: Array, vanishing: Sequence[VanishingPoint],
 ) -> Frustum:  # fmt: skip
     """The picture stands at `depth`; there a pixel is as far from the axis as its line of sight is."""
-    seen = [k for k, point in enumerate(points) if point["in_image"]]
+    seen = [k for k, point in enumerate(points) if point.in_image]
     chosen = points[NAMES.index(p.selected)]
-    meets: list[Pixel] = [v["pixel"] if v["in_image"] else (math.nan, math.nan) for v in vanishing]
-    pixels = [points[k]["pixel"] for k in seen]
-    flat = np.concatenate([CORNERS, np.reshape(pixels, (-1, 2)), meets, [chosen["pixel"] or (math.nan, math.nan)]])
+    meets = [v.pixel if v.pixel and v.in_image else (math.nan, math.nan) for v in vanishing]
+    pixels = [pixel for k in seen if (pixel := points[k].pixel)]
+    flat = np.concatenate([CORNERS, np.reshape(pixels, (-1, 2)), meets, [chosen.pixel or (math.nan, math.nan)]])
     placed = _placed(camera, np.concatenate([flat, wires.reshape(-1, 2)]), scale or depth, depth)
     corners, dots, rest = placed[:4], placed[4 : 4 + len(seen)], placed[4 + len(seen) :]
     targets, meet = in_camera[seen], rest[:3]
@@ -227,7 +260,7 @@ def _frustum(
         wires=rest[4:].reshape(-1, 2, 3),
         dots=dots,
         rays=np.stack([starts, targets], axis=1),
-        chosen=_sight(rest[3], np.array(chosen["camera"]), scale) if chosen["pixel"] else None,
+        chosen=_sight(rest[3], np.array(chosen.camera), scale) if chosen.pixel else None,
         meet=meet,
     )
 

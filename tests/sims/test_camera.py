@@ -75,9 +75,9 @@ def test_matrices_are_those_of_the_contract(p: CameraParams) -> None:
         assert s.P is not None
         np.testing.assert_allclose(s.P, intrinsics(p) @ np.column_stack([R, t]), rtol=0, atol=1e-9)
         assert s.decomposed is not None
-        np.testing.assert_allclose(s.decomposed["K"], s.K, rtol=1e-9, atol=1e-7)
-        np.testing.assert_allclose(s.decomposed["R"], s.R, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(s.decomposed["center"], s.center, rtol=0, atol=1e-7)
+        np.testing.assert_allclose(s.decomposed.K, s.K, rtol=1e-9, atol=1e-7)
+        np.testing.assert_allclose(s.decomposed.R, s.R, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(s.decomposed.center, s.center, rtol=0, atol=1e-7)
     else:
         assert s.decomposed is None
 
@@ -89,27 +89,27 @@ def test_pixels_are_opencvs_and_only_what_is_in_front_has_one(p: CameraParams) -
     theirs = cv2.projectPoints(POINTS, cv2.Rodrigues(R)[0], t, intrinsics(p), None)[0].reshape(-1, 2)
     depths = (POINTS @ R.T + t)[:, 2]
     for point, pixel, depth in zip(solve(p).points, theirs, depths, strict=True):
-        assert point["depth"] == pytest.approx(depth, abs=1e-9)
+        assert point.depth == pytest.approx(depth, abs=1e-9)
         if abs(depth) < 1e-3:
             continue
-        assert (point["pixel"] is None) == (depth <= 0.0)
-        if point["pixel"] is not None:
-            np.testing.assert_allclose(point["pixel"], pixel, rtol=1e-7, atol=1e-5)
-            u, v = point["pixel"]
-            assert point["in_image"] == (-0.5 <= u <= 639.5 and -0.5 <= v <= 479.5)
+        assert (point.pixel is None) == (depth <= 0.0)
+        if point.pixel is not None:
+            np.testing.assert_allclose(point.pixel, pixel, rtol=1e-7, atol=1e-5)
+            u, v = point.pixel
+            assert point.in_image == (-0.5 <= u <= 639.5 and -0.5 <= v <= 479.5)
 
 
 @given(states)
 def test_p_maps_every_named_point_to_its_pixel(p: CameraParams) -> None:
     s = solve(p)
     for name, point in zip(NAMES, s.points, strict=True):
-        assert point["world"] == PLACES[name]
-        assert point["name"] == name
-        np.testing.assert_allclose(point["camera"], s.R @ point["world"] + s.t, rtol=0, atol=1e-10)
-        if point["pixel"] is not None and point["depth"] > 1e-3:
+        assert point.world == PLACES[name]
+        assert point.name == name
+        np.testing.assert_allclose(point.camera, s.R @ point.world + s.t, rtol=0, atol=1e-10)
+        if point.pixel is not None and point.depth > 1e-3:
             assert s.P is not None
-            a, b, w = s.P @ [*point["world"], 1.0]
-            np.testing.assert_allclose((a / w, b / w), point["pixel"], rtol=1e-6, atol=1e-6)
+            a, b, w = s.P @ [*point.world, 1.0]
+            np.testing.assert_allclose((a / w, b / w), point.pixel, rtol=1e-6, atol=1e-6)
 
 
 @pytest.mark.parametrize(("cx", "cy", "fx", "fy"), [(320, 240, 600, 600), (0, 480, 300, 900), (640, 10, 2000, 100)])
@@ -122,7 +122,10 @@ def test_fields_of_view_are_those_of_the_off_centre_frustum(cx: float, cy: float
 
 def upright(s: CameraSolution, which: str) -> float:
     """Height of a post in the picture."""
-    return s.point(f"{which}-foot")["pixel"][1] - s.point(f"{which}-post")["pixel"][1]  # type: ignore[no-any-return]
+    foot, top = (s.point(f"{which}-{end}").pixel for end in ("foot", "post"))
+    assert foot is not None
+    assert top is not None
+    return foot[1] - top[1]
 
 
 def test_without_perspective_near_and_far_posts_are_as_tall() -> None:
@@ -148,7 +151,7 @@ def test_orthographic_keeps_sizes_at_the_subjects_depth_and_weak_at_the_mean_dep
         np.testing.assert_allclose(s.P[2], [0, 0, 0, 1], rtol=0, atol=0)
         np.testing.assert_allclose(s.P[:2, :3], intrinsics(p)[:2, :2] @ R[:2] / depth, rtol=1e-12, atol=1e-12)
     perspective, flat = (solve(p.changed({"projection": kind})).subject for kind in ("perspective", "orthographic"))
-    np.testing.assert_allclose(flat["pixel"], perspective["pixel"], rtol=0, atol=1e-9)
+    assert flat.pixel == pytest.approx(perspective.pixel, rel=0, abs=1e-9)
 
 
 @given(states)
@@ -184,14 +187,15 @@ def test_parallels_of_the_street_meet_at_its_vanishing_points() -> None:
     pairs = {"along": ("eave-near-left", "eave-far-left"), "across": ("eave-near-left", "eave-near-right"),
              "up": ("wall-near-left", "eave-near-left")}  # fmt: skip
     for meet in s.vanishing:
-        first, second = (s.P @ [*PLACES[name], 1.0] for name in pairs[meet["name"]])
+        first, second = (s.P @ [*PLACES[name], 1.0] for name in pairs[meet.name])
         line = np.cross(first, second)
-        assert abs(line @ meet["homogeneous"]) < 1e-9 * np.linalg.norm(line) * np.linalg.norm(meet["homogeneous"])
-        assert meet["pixel"] is not None
-    level = {meet["name"]: meet for meet in solve(START).vanishing}
-    assert level["up"]["pixel"] is None
-    assert level["along"]["in_image"]
-    assert not level["across"]["in_image"]
+        assert meet.homogeneous is not None
+        assert abs(line @ meet.homogeneous) < 1e-9 * np.linalg.norm(line) * np.linalg.norm(meet.homogeneous)
+        assert meet.pixel is not None
+    level = {meet.name: meet for meet in solve(START).vanishing}
+    assert level["up"].pixel is None
+    assert level["along"].in_image
+    assert not level["across"].in_image
 
 
 # ---- what is drawn
@@ -264,7 +268,7 @@ def test_camera_and_grips_are_where_the_numbers_say(rig: Rig, p: CameraParams) -
 def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p: CameraParams) -> None:
     rig.show(p)
     s = solve(p)
-    seen = [point for point in s.points if point["in_image"]]
+    seen = [point for point in s.points if point.in_image]
     if s.frustum is None:
         assert not rig.model.visible("/camera/dots")
         assert not rig.model.visible("/camera/ray")
@@ -272,18 +276,18 @@ def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p:
     dots = rig.model.points("/camera/dots").reshape(-1, 3)
     assert len(dots) == len(seen)
     for dot, point in zip(dots, seen, strict=True):
-        assert miss(*sight_line(p, dot), np.array(point["world"])) < 1e-6 * max(1.0, point["depth"])
+        assert miss(*sight_line(p, dot), np.array(point.world)) < 1e-6 * max(1.0, point.depth)
     assert rig.model.visible("/camera/rays") == (bool(seen) and p.show_rays)
     if seen and p.show_rays:
         rays = rig.model.points("/camera/rays").reshape(-1, 2, 3)
-        np.testing.assert_allclose(rays[:, 1], [point["world"] for point in seen], rtol=0, atol=2e-6)
+        np.testing.assert_allclose(rays[:, 1], [point.world for point in seen], rtol=0, atol=2e-6)
     chosen = s.point(p.selected)
-    assert rig.model.visible("/camera/ray") == (chosen["pixel"] is not None) == rig.model.visible("/camera/dot")
-    if chosen["pixel"] is not None:
+    assert rig.model.visible("/camera/ray") == (chosen.pixel is not None) == rig.model.visible("/camera/dot")
+    if chosen.pixel is not None:
         dot = rig.model.world_pose("/camera/dot")[:3, 3]
-        assert miss(*sight_line(p, dot), np.array(chosen["world"])) < 1e-6
+        assert miss(*sight_line(p, dot), np.array(chosen.world)) < 1e-6
         start, end = rig.model.points("/camera/ray")[0]
-        np.testing.assert_allclose(end, chosen["world"], rtol=0, atol=4e-6)
+        np.testing.assert_allclose(end, chosen.world, rtol=0, atol=4e-6)
         assert miss(start, end - start, dot) < 1e-5
         if p.projection == "perspective":
             np.testing.assert_allclose(start, p.position, rtol=0, atol=1e-12)
@@ -323,14 +327,14 @@ def test_the_picture_beside_the_scene_shows_the_same_pixels(rig: Rig, p: CameraP
     rig.show(p)
     s = solve(p)
     marks = {e.get("data-link"): e for e in xml(rig.model.html("s3-panes")).iter() if e.get("data-link")}
-    assert set(marks) == {point["name"] for point in s.points if point["pixel"] is not None}
+    assert set(marks) == {point.name for point in s.points if point.pixel is not None}
     for point in s.points:
-        if point["in_image"]:
-            found = re.findall(r"[-\d.]+", str(marks[point["name"]].get("transform")))
-            np.testing.assert_allclose([float(v) for v in found], point["pixel"], rtol=0, atol=0.006)
-        elif point["pixel"] is not None:
-            assert next(marks[point["name"]].iter("path")) is not None, "an arrowhead at the border"
-    assert "∞" in rig.model.html("s3-panes") or all(m["pixel"] or not m["homogeneous"] for m in s.vanishing)
+        if point.in_image:
+            found = re.findall(r"[-\d.]+", str(marks[point.name].get("transform")))
+            assert tuple(map(float, found)) == pytest.approx(point.pixel, rel=0, abs=0.006)
+        elif point.pixel is not None:
+            assert next(marks[point.name].iter("path")) is not None, "an arrowhead at the border"
+    assert "∞" in rig.model.html("s3-panes") or all(m.pixel or not m.homogeneous for m in s.vanishing)
 
 
 def test_the_street_stands_on_the_ground(rig: Rig) -> None:
@@ -409,8 +413,8 @@ def test_a_point_that_is_not_in_front_is_said_to_have_no_pixel() -> None:
     assert "Pixel: K x" not in text
     in_plane = START.changed({"position": (0.0, PLACES["near-post"][1], 1.2), "selected": "near-post"})
     s = solve(in_plane)
-    assert s.point("near-post")["depth"] == 0.0
-    assert s.point("near-post")["pixel"] is None
+    assert s.point("near-post").depth == 0.0
+    assert s.point("near-post").pixel is None
 
 
 def test_the_chosen_point_is_worked_through_step_by_step() -> None:
@@ -436,7 +440,7 @@ def test_a_projection_without_scale_says_so_and_the_rest_goes_on() -> None:
     p = START.changed(SIM.states["no scale"])
     s = solve(p)
     assert s.P is None
-    assert all(point["pixel"] is None for point in s.points)
+    assert all(point.pixel is None for point in s.points)
     assert "isn't in front of the camera" in words(readout.render(SIM.readouts(p, s)))
 
 
@@ -508,8 +512,8 @@ def test_looking_at_the_subject_puts_it_on_the_principal_point(p: CameraParams) 
         p = p.changed(step.changes)
     p = p.changed({"projection": "perspective"})
     subject = solve(p).subject
-    assert subject["depth"] > 0.0
-    np.testing.assert_allclose(subject["pixel"], (p.cx, p.cy), rtol=0, atol=1e-4)
+    assert subject.depth > 0.0
+    assert subject.pixel == pytest.approx((p.cx, p.cy), rel=0, abs=1e-4)
 
 
 def test_looking_turns_the_shorter_way_round() -> None:
@@ -561,12 +565,12 @@ def test_dolly_zoom_keeps_the_house_as_tall_within_half_a_pixel(changes: dict[st
     assert end.fx / start.fx == pytest.approx(end.fy / start.fy)
     axis = pose(start)[0][2]
     assert miss(np.array(start.position), axis, np.array(end.position)) < 1e-9, "it moves along the optical axis"
-    assert solve(end).subject["height"] == pytest.approx(wanted, abs=0.5)
+    assert solve(end).subject.height == pytest.approx(wanted, abs=0.5)
 
 
 def test_dolly_zoom_first_looks_where_the_subject_is_out_of_sight() -> None:
     way = list(frames(START.changed({"pan": 180})))
-    looked = next(k for k, p in enumerate(way) if solve(p).subject["depth"] > 0.5 and p.pan == way[-1].pan)
+    looked = next(k for k, p in enumerate(way) if solve(p).subject.depth > 0.5 and p.pan == way[-1].pan)
     wanted = height(way[looked])
     assert max(abs(height(p) - wanted) for p in way[looked:]) < 0.5
 
