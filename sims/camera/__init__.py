@@ -12,9 +12,9 @@ from sims.camera.params import CameraParams
 from sims.camera.readouts import describe, readouts
 from sims.camera.scene import CameraScene
 from sims.camera.solution import CameraSolution, solve
-from sims.kit.sim import Action, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim, View
 
-__all__ = ["SIM", "CameraParams", "CameraSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "CameraParams", "CameraSolution", "solve"]
 
 SIM = Sim(
     slug="camera",
@@ -56,5 +56,18 @@ SIM = Sim(
         "rolled": {"roll": 30, "tilt": 15},
         "nothing in front": {"position": (0.0, 20.0, 1.2)},
         "seen along the street": {"projection": "orthographic", "pan": -15},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="fx fy cx cy skew position pan tilt roll projection show_rays show_frustum",
+    solution="K R t P center fov_x fov_y points",
+    link=(
+        "fx=800&fy=700&cx=300&cy=200&skew=10&position=1,-5.5,2&pan=20&tilt=-10&roll=5&projection=weak"
+        "&show_rays=0&show_frustum=0"
+    ),
+    state={
+        "fx": 800.0, "fy": 700.0, "cx": 300.0, "cy": 200.0, "skew": 10.0, "position": [1.0, -5.5, 2.0],
+        "pan": 20.0, "tilt": -10.0, "roll": 5.0, "projection": "weak", "show_rays": False, "show_frustum": False,
     },
 )  # fmt: skip

@@ -10,9 +10,9 @@ from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import describe, readouts
 from sims.coordinate_frames.scene import FramesScene
 from sims.coordinate_frames.solution import FramesSolution, solve
-from sims.kit.sim import Action, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim, View
 
-__all__ = ["SIM", "FramesParams", "FramesSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "FramesParams", "FramesSolution", "solve"]
 
 SIM = Sim(
     slug="coordinate-frames",
@@ -52,5 +52,15 @@ SIM = Sim(
         "neither": {"point": (0, 0, 0), "w": 0},
         "origin": {"point": (0, 0, 0), "w": 0.5},
         "without the hand": {"show_rule": False},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="convention to handedness point w grid_xy grid_xz grid_yz show_rule",
+    solution="basis handedness point_world coordinates matrix determinant homogeneous cartesian",
+    link="convention=ros&to=camera&handedness=left&point=2,-1,0.5&w=0.5&grid_xy=1&grid_yz=1&show_rule=0",
+    state={
+        "convention": "ros", "to": "camera", "handedness": "left", "point": [2.0, -1.0, 0.5], "w": 0.5,
+        "grid_xy": True, "grid_xz": False, "grid_yz": True, "show_rule": False,
     },
 )  # fmt: skip

@@ -12,9 +12,9 @@ from sims.epipolar.params import EpipolarParams
 from sims.epipolar.readouts import describe, readouts
 from sims.epipolar.scene import EpipolarScene
 from sims.epipolar.solution import EpipolarSolution, solve
-from sims.kit.sim import Action, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim, View
 
-__all__ = ["SIM", "EpipolarParams", "EpipolarSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "EpipolarParams", "EpipolarSolution", "solve"]
 
 SIM = Sim(
     slug="epipolar",
@@ -72,5 +72,22 @@ SIM = Sim(
         "at a centre": {"point": (-0.6, 0.0, 1.0)},
         "out of the pictures": {"point": (4.0, 3.0, 3.0)},
         "epipole far away": {"left_pan": 0.001, "right_pan": -0.001},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="left right left_pan right_pan focal point points show_plane show_all_lines pick",
+    solution=(
+        "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"
+        " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson"
+    ),
+    link=(
+        "left=-0.5,0,1.2&right=0.5,0.1,1&left_pan=-10&right_pan=12.5&focal=700&point=0.2,3.5,1.1"
+        "&points=9&show_plane=0&show_all_lines=1&pick=right:300,200.5"
+    ),
+    state={
+        "left": [-0.5, 0.0, 1.2], "right": [0.5, 0.1, 1.0], "left_pan": -10.0, "right_pan": 12.5, "focal": 700.0,
+        "point": [0.2, 3.5, 1.1], "points": 9, "show_plane": False, "show_all_lines": True,
+        "pick": "right:300,200.5",
     },
 )  # fmt: skip

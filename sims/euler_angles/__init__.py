@@ -11,9 +11,9 @@ from sims.euler_angles.params import EulerParams
 from sims.euler_angles.readouts import describe, readouts
 from sims.euler_angles.scene import EulerScene
 from sims.euler_angles.solution import EulerSolution, solve
-from sims.kit.sim import Action, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim, View
 
-__all__ = ["SIM", "EulerParams", "EulerSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "EulerParams", "EulerSolution", "solve"]
 
 SIM = Sim(
     slug="euler-angles",
@@ -46,3 +46,12 @@ SIM = Sim(
         "half-way": {"progress": 1.5},
     },
 )
+
+CONTRACT = Contract(
+    parameters="order frame yaw pitch roll progress",
+    solution="R factors quaternion axis_angle lock_distance locked",
+    link="order=zxz&frame=extrinsic&yaw=-120.5&pitch=90&roll=45&progress=1.5",
+    state={
+        "order": "zxz", "frame": "extrinsic", "yaw": -120.5, "pitch": 90.0, "roll": 45.0, "progress": 1.5,
+    },
+)  # fmt: skip

@@ -12,9 +12,9 @@ from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.readouts import describe, readouts
 from sims.gimbal_lock.scene import GimbalScene
 from sims.gimbal_lock.solution import GimbalSolution, solve
-from sims.kit.sim import Action, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim, View
 
-__all__ = ["SIM", "GimbalParams", "GimbalSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "GimbalParams", "GimbalSolution", "solve"]
 
 SIM = Sim(
     slug="gimbal-lock",
@@ -56,5 +56,14 @@ SIM = Sim(
         "same orientation": {"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
         "ghost about the lost axis": {"pitch": 90, "show_ghost": True, "ghost": (90, 60, 90)},
         "ghost elsewhere": {"pitch": 20, "show_ghost": True, "ghost": (90, 60, 90), "show_reach": False},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="yaw pitch roll",
+    solution="R axes singular_values dof lost_axis conditioning",
+    link="yaw=-30&pitch=90&roll=45.5",
+    state={
+        "yaw": -30.0, "pitch": 90.0, "roll": 45.5,
     },
 )  # fmt: skip

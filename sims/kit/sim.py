@@ -144,6 +144,21 @@ class Sim(Generic[P, S]):
     """Work that somebody will need soon: done one after the other when the sim was first opened on a server."""
 
 
+@dataclass(frozen=True)
+class Contract:
+    """What other people's pages rely on. A name may be added; one that stands here may not go or change.
+
+    Names of parameters and of the solution's fields, with blanks between, and one link as it stands in course pages
+    with the state (without what is at its default) that it has always meant. A renamed parameter keeps its old name as
+    an alias.
+    """
+
+    parameters: str
+    solution: str
+    link: str
+    state: Mapping[str, Any]
+
+
 def jsonable(value: Any) -> Any:
     """A Solution as JSON: arrays as nested lists by rows; what doesn't exist (NaN, infinite) as null."""
     if is_dataclass(value) and not isinstance(value, type):

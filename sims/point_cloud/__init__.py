@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from sims.kit.sim import Action, Files, Objective, Sim
+from sims.kit.sim import Action, Contract, Files, Objective, Sim
 from sims.point_cloud import actions, library
 from sims.point_cloud.datasets import DATASETS, dataset
 from sims.point_cloud.files import FORMATS
@@ -14,7 +14,7 @@ from sims.point_cloud.readouts import describe, preview, readouts
 from sims.point_cloud.scene import CloudScene
 from sims.point_cloud.solution import CloudSolution, ply, solve
 
-__all__ = ["SIM", "CloudParams", "CloudSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "CloudParams", "CloudSolution", "solve"]
 
 SIM = Sim(
     slug="point-cloud",
@@ -67,4 +67,17 @@ SIM = Sim(
     downloads={"point-cloud.ply": ply},
     heavy=True,
     ahead=[partial(dataset, name) for name in DATASETS],
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="dataset color point_size voxel_size show_normals neighbors show_box selected process step",
+    solution="points_in points_out minimum maximum dimensions selected",
+    link=(
+        "dataset=statue&color=height&point_size=3&voxel_size=0.05&show_normals=1&neighbors=20"
+        "&show_box=0&selected=12&process=outliers&step=1"
+    ),
+    state={
+        "dataset": "statue", "color": "height", "point_size": 3.0, "voxel_size": 0.05, "show_normals": True,
+        "neighbors": 20, "show_box": False, "selected": 12, "process": "outliers", "step": 1,
+    },
 )  # fmt: skip

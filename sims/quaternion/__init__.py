@@ -6,7 +6,7 @@ is q ⊗ start. Between the two it goes by SLERP, NLERP or Euler angles.
 
 from __future__ import annotations
 
-from sims.kit.sim import Action, Objective, Sim
+from sims.kit.sim import Action, Contract, Objective, Sim
 from sims.quaternion import actions
 from sims.quaternion.panes import VIEW, panes
 from sims.quaternion.params import QuaternionParams
@@ -14,7 +14,7 @@ from sims.quaternion.readouts import describe, readouts
 from sims.quaternion.scene import QuaternionScene
 from sims.quaternion.solution import QuaternionSolution, solve
 
-__all__ = ["SIM", "QuaternionParams", "QuaternionSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "QuaternionParams", "QuaternionSolution", "solve"]
 
 HALF = 0.5**0.5
 
@@ -57,5 +57,18 @@ SIM = Sim(
             "start": (HALF, 0, 0, HALF), "history": (0, 0, 1, 90), "axis": (1, 0, 0), "show_euler": True, "t": 0.5,
         },
         "euler path": {"axis": (1, 1, 0), "angle": 150, "interpolation": "euler", "t": 0.5, "show_euler": True},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="axis angle start t interpolation long_way show_euler point",
+    solution="q q_total R_total euler rotated_point interpolated sandwich",
+    link=(
+        "axis=1,1,0&angle=120&start=0.5,0.5,0.5,0.5&t=0.25&interpolation=nlerp&long_way=1&show_euler=1"
+        "&point=0,1,0.5"
+    ),
+    state={
+        "axis": [1.0, 1.0, 0.0], "angle": 120.0, "start": [0.5, 0.5, 0.5, 0.5], "t": 0.25,
+        "interpolation": "nlerp", "long_way": True, "show_euler": True, "point": [0.0, 1.0, 0.5],
     },
 )  # fmt: skip

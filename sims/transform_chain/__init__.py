@@ -5,14 +5,14 @@ Link i is T_{i−1,i} = Rot(axis_i, angle_i) · Trans(length_i, 0, 0), and the e
 
 from __future__ import annotations
 
-from sims.kit.sim import Objective, Sim, Typed, View
+from sims.kit.sim import Contract, Objective, Sim, Typed, View
 from sims.transform_chain import actions
 from sims.transform_chain.params import ChainParams
 from sims.transform_chain.readouts import describe, readouts
 from sims.transform_chain.scene import ChainScene
 from sims.transform_chain.solution import ChainSolution, solve
 
-__all__ = ["SIM", "ChainParams", "ChainSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "ChainParams", "ChainSolution", "solve"]
 
 SIM = Sim(
     slug="transform-chain",
@@ -64,5 +64,15 @@ SIM = Sim(
             "angles": (30, -60, 80, 0, 40, 0), "lengths": (0.15, 0.7, 0.6, 0, 0, 0.065), "axes": "zyyxyx",
             "show": "composed",
         },
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="angles lengths axes show swap",
+    solution="individual composed end_effector inverse positions swapped_end_effector",
+    link="show=composed&angles=30,40,-30.5,90&lengths=1,0.8,0.5,0&axes=zyyx&swap=2",
+    state={
+        "show": "composed", "angles": [30.0, 40.0, -30.5, 90.0], "lengths": [1.0, 0.8, 0.5, 0.0], "axes": "zyyx",
+        "swap": 2,
     },
 )  # fmt: skip

@@ -6,7 +6,7 @@ the rays meet, or nearly meet, and noise in the pixels says how far that may be 
 
 from __future__ import annotations
 
-from sims.kit.sim import Action, Objective, Sim, Typed, View
+from sims.kit.sim import Action, Contract, Objective, Sim, Typed, View
 from sims.triangulation import actions
 from sims.triangulation.panes import panes
 from sims.triangulation.params import FARTHEST, NEAREST, TriangulationParams
@@ -14,7 +14,7 @@ from sims.triangulation.readouts import describe, readouts
 from sims.triangulation.scene import TriangulationScene
 from sims.triangulation.solution import TriangulationSolution, solve
 
-__all__ = ["SIM", "TriangulationParams", "TriangulationSolution", "solve"]
+__all__ = ["CONTRACT", "SIM", "TriangulationParams", "TriangulationSolution", "solve"]
 
 SIM = Sim(
     slug="triangulation",
@@ -59,5 +59,18 @@ SIM = Sim(
         "tiny baseline": {"baseline": 0.05, "left_uv": (357.5, 210), "right_uv": (350, 210), "noise": 0.5},
         "near": {"left_uv": (639, 240), "right_uv": (0, 240)},
         "noise makes rays parallel": {"right_uv": (409, 210), "noise": 5.0},
+    },
+)  # fmt: skip
+
+CONTRACT = Contract(
+    parameters="baseline focal left_uv right_uv noise seed method",
+    solution=(
+        "point by_method ray_gap closest_points disparity depth_from_disparity covariance"
+        " ellipsoid_axes parallax_angle in_front"
+    ),
+    link="baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
+    state={
+        "baseline": 1.2, "focal": 800.0, "left_uv": [400.0, 200.0], "right_uv": [300.0, 201.5], "noise": 0.5,
+        "seed": 7, "method": "optimal",
     },
 )  # fmt: skip

@@ -20,7 +20,7 @@ from tests.app.conftest import Local
 from tests.schema import wrong
 from tests.server import wait_for
 from tests.sims.cases import FEW, FEW_NAMES
-from tests.sims.contract import GOLDEN
+from tests.sims.contract import contract_of
 
 AnySim = Sim[Any, Any]
 TRIANGULATION = next(sim for sim in SIMS if sim.slug == "triangulation")
@@ -119,7 +119,7 @@ def test_all_parameters_are_optional(http: httpx.Client, sim: AnySim) -> None:
 
 @each_sim
 def test_golden_link_means_the_same_here(http: httpx.Client, sim: AnySim) -> None:
-    _, meaning = GOLDEN[sim.slug]
+    meaning = contract_of(sim).state
     told = strict(http.post(f"/api/sims/{sim.slug}/solve", json=meaning))
     assert told["params"] == told["params"] | meaning
 
@@ -407,7 +407,8 @@ def test_bad_link_names_the_parameter_the_value_and_what_is_allowed(
 @each_sim
 @pytest.mark.parametrize("path", ["", "/embed"], ids=["page", "embed"])
 def test_the_good_rest_of_a_bad_link_is_kept(http: httpx.Client, sim: AnySim, path: str) -> None:
-    link, meaning = GOLDEN[sim.slug]
+    contract = contract_of(sim)
+    link, meaning = contract.link, contract.state
     bad = next(iter(meaning))
     rest = "&".join(part for part in link.split("&") if not part.startswith(f"{bad}="))
     answer = http.get(f"/sims/{sim.slug}{path}?{rest}&{bad}=%3Cb%3E&colour=red&theme=dark")
@@ -460,7 +461,7 @@ def test_a_link_full_of_mistakes_gets_a_short_page(http: httpx.Client) -> None:
 
 @each_sim
 def test_good_links_open(http: httpx.Client, sim: AnySim) -> None:
-    link, _ = GOLDEN[sim.slug]
+    link = contract_of(sim).link
     for query in ("", f"?{link}", f"?{link}&theme=dark&controls=0&view=3,-3,2,0,0,0"):
         page = http.get(f"/sims/{sim.slug}{query}")
         assert page.status_code == 200

@@ -22,7 +22,7 @@ from sims.kit.viewer import Look
 from tests.frames import differences
 from tests.server import Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
-from tests.sims.contract import GOLDEN, PARAMETERS, SOLUTION
+from tests.sims.contract import contract_of
 from tests.sims.markup import bad_attributes, bad_numbers, mistakes, words, xml
 
 AnySim = Sim[Any, Any]
@@ -55,14 +55,15 @@ def parse(sim: AnySim, query: str) -> Params:
 @each_sim
 def test_parameters_keep_the_names_of_the_contract(sim: AnySim) -> None:
     known = {*sim.params.model_fields, *(f.alias for f in sim.params.model_fields.values() if f.alias)}
-    assert set(PARAMETERS[sim.slug].split()) <= known
+    assert set(contract_of(sim).parameters.split()) <= known
 
 
 @each_sim
 def test_golden_link_keeps_its_meaning(sim: AnySim) -> None:
-    link, meaning = GOLDEN[sim.slug]
+    contract = contract_of(sim)
+    link, meaning = contract.link, contract.state
     params = parse(sim, link)
-    assert params.model_dump(mode="json") | meaning == params.model_dump(mode="json")
+    assert {**params.model_dump(mode="json"), **meaning} == params.model_dump(mode="json")
 
 
 @each_state
@@ -116,7 +117,7 @@ def test_slug_finds_the_sim(sim: AnySim) -> None:
 @each_state
 def test_solution_is_finite_json_with_the_fields_of_the_contract(sim: AnySim, name: str, params: Params) -> None:
     solution = jsonable(sim.solve(params))
-    assert set(SOLUTION[sim.slug].split()) <= set(solution)
+    assert set(contract_of(sim).solution.split()) <= set(solution)
     text = json.dumps(solution, allow_nan=False)
     assert "-0.0," not in text, "a negative zero goes out"
 
