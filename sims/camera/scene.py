@@ -44,7 +44,7 @@ class CameraScene:
         self.labels = {
             point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
         }
-        self.camera = Eye(stage)
+        self.camera = CameraInScene(stage)
         self.stand = stage.lines("/stand", "ghost", width=1.2)
         self.eye = stage.grip("/eye", GRIP)
         self.look = stage.grip("/look", GRIP)
@@ -74,7 +74,7 @@ def above(place: Place) -> Place:
     return place[0], place[1], place[2] + ABOVE
 
 
-class Eye:
+class CameraInScene:
     """The camera: body, axes, frustum, and its picture with the lines of sight that make it."""
 
     def __init__(self, stage: Stage) -> None:

@@ -137,7 +137,7 @@ WAYS: Array = np.array([way for _, way in DIRECTIONS.values()])
 FOLLOWED: Array = np.concatenate([POINTS, [MIDDLE, *SUBJECT]])
 """Named points, and of the subject middle, ground and ridge."""
 CORNERS: Array = np.array([(-0.5, -0.5), (WIDTH - 0.5, -0.5), (WIDTH - 0.5, HEIGHT - 0.5), (-0.5, HEIGHT - 0.5)])
-Eye = Camera | AffineCamera
+CameraModel = Camera | AffineCamera
 
 
 def camera_of(p: CameraParams) -> Camera:
@@ -155,17 +155,17 @@ def solve(p: CameraParams) -> CameraSolution:
     axes = camera.to_camera(FOLLOWED)
     in_camera, depth = axes[: len(POINTS)], axes.item(len(POINTS), 2)
     mean = float(in_camera[:, 2].sum()) / len(POINTS)
-    eye, scale = _eye(p, camera, {"weak": mean, "orthographic": depth}.get(p.projection))
-    pixels, wires, shown = _pictured(eye, camera)
+    model, scale = _camera_model(p, camera, {"weak": mean, "orthographic": depth}.get(p.projection))
+    pixels, wires, shown = _pictured(model, camera)
     points = _points(in_camera, pixels[: len(POINTS)])
-    vanishing = () if eye is None else _vanishing(eye.P)
-    finite = eye is camera
+    vanishing = () if model is None else _vanishing(model.P)
+    finite = model is camera
     picture_depth = PICTURE_WIDTH * p.fx / WIDTH
     return CameraSolution(
         K=camera.K,
         R=camera.R,
         t=camera.t,
-        P=None if eye is None else eye.P,
+        P=None if model is None else model.P,
         center=np.array(p.position),
         orientation=quaternion.from_matrix(camera.R.T),
         **dict(zip(("fov_x", "fov_y"), map(math.degrees, camera.fov(WIDTH, HEIGHT)), strict=True)),
@@ -177,14 +177,16 @@ def solve(p: CameraParams) -> CameraSolution:
         vanishing=vanishing,
         wires=wires,
         shown=shown,
-        frustum=None if eye is None else _frustum(p, camera, scale, picture_depth, points, in_camera, wires, vanishing),
+        frustum=None
+        if model is None
+        else _frustum(p, camera, scale, picture_depth, points, in_camera, wires, vanishing),
         reach=picture_depth + BEYOND,
         look=np.array(p.position) + (picture_depth + BEYOND) * camera.R[2],
         grip=np.add(p.position, (0.0, 0.0, LIFT)),
     )
 
 
-def _eye(p: CameraParams, camera: Camera, scale: float | None) -> tuple[Eye | None, float | None]:
+def _camera_model(p: CameraParams, camera: Camera, scale: float | None) -> tuple[CameraModel | None, float | None]:
     """What makes the picture, and the one depth by which it divides; neither where that depth makes no sense."""
     if p.projection == "perspective":
         return camera, None
@@ -227,13 +229,13 @@ def _vanishing(P: Array) -> tuple[VanishingPoint, ...]:
     )
 
 
-def _pictured(eye: Eye | None, camera: Camera) -> tuple[Array, Array, npt.NDArray[np.intp]]:
+def _pictured(model: CameraModel | None, camera: Camera) -> tuple[Array, Array, npt.NDArray[np.intp]]:
     """Pixels of what is followed (n, 2), edges in the picture (m, 2, 2), and their numbers in the world (m,)."""
-    if eye is None:
+    if model is None:
         return np.full((len(FOLLOWED), 2), np.nan), np.empty((0, 2, 2)), np.empty(0, int)
     plane = np.append(camera.R[2], camera.t[2] - NEAREST)
-    parts, exists = clip_segments(WIRES, np.vstack([frame_planes(eye.P, WIDTH, HEIGHT), plane]))
-    pixels, _ = eye.project(np.concatenate([FOLLOWED, parts[exists].reshape(-1, 3)]))
+    parts, exists = clip_segments(WIRES, np.vstack([frame_planes(model.P, WIDTH, HEIGHT), plane]))
+    pixels, _ = model.project(np.concatenate([FOLLOWED, parts[exists].reshape(-1, 3)]))
     return pixels[: len(FOLLOWED)], pixels[len(FOLLOWED) :].reshape(-1, 2, 2), np.flatnonzero(exists)
 
 

@@ -27,7 +27,7 @@ Segments = tuple[Segment, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class EyeDrawn:
+class CameraDrawing:
     """One camera: its pose, and in its own axes (x right, y down, z forward, metres) what lies on its picture."""
 
     wxyz: tuple[float, ...]
@@ -46,11 +46,11 @@ class EyeDrawn:
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class Drawing:
     """Both cameras; in the world the corners (4, 3) of the piece of the epipolar plane that is shown, and a ray."""
 
-    left: EyeDrawn
-    right: EyeDrawn
+    left: CameraDrawing
+    right: CameraDrawing
     plane: Array | None
     picked_ray: Segment | None
 
@@ -92,15 +92,15 @@ def chords(lines: Array, focal: float, near: float) -> Segments:
     return tuple(piece for piece in found if piece is not None)
 
 
-def eye_drawn(
+def camera_drawing(
     center: Place, wxyz: tuple[float, ...], focal: float, size: float, *, pixel: Pixel | None, line: Array | None,
     picked: Array | None, epipole: Array | None, others: Array, all_lines: Segments,
-) -> EyeDrawn:  # fmt: skip
+) -> CameraDrawing:  # fmt: skip
     """What one camera shows: of the held point its pixel and its line, of the other points what is drawn already."""
     near = distance(focal, size)
     piece, chosen = (None if l is None else chord(l.tolist(), focal, near) for l in (line, picked))
     end = None if epipole is None else _epipole(epipole.tolist(), focal, near)
-    return EyeDrawn(
+    return CameraDrawing(
         wxyz=wxyz,
         center=center,
         size=size,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any
 
-from sims.epipolar.drawing import EyeDrawn, distance
+from sims.epipolar.drawing import CameraDrawing, distance
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
@@ -37,8 +37,8 @@ def hold(name: str) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str
 def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
     """The finished plan."""
     picture = _others(p.points - 1, p.selected).copy()
-    _eye(picture, p, "left", s.drawn.left, p.left_pan)
-    _eye(picture, p, "right", s.drawn.right, p.right_pan)
+    _camera(picture, p, "left", s.drawn.left, p.left_pan)
+    _camera(picture, p, "right", s.drawn.right, p.right_pan)
     picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
     held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, title(1))
     for (name, place, words), letter, link in zip(held, "LRP", ("", "", "1"), strict=True):
@@ -68,7 +68,7 @@ def _others(count: int, selected: int) -> Picture:
     return picture
 
 
-def _eye(picture: Picture, p: EpipolarParams, side: Side, drawn: EyeDrawn, pan: float) -> None:
+def _camera(picture: Picture, p: EpipolarParams, side: Side, drawn: CameraDrawing, pan: float) -> None:
     """What the camera sees, its picture, the ray to the point, and its epipole where the baseline meets the picture."""
     cos, sin = math.cos(math.radians(pan)), math.sin(math.radians(pan))
     near, (x, y, _) = distance(p.focal, drawn.size), drawn.center

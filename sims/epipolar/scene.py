@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from geometry.arrays import Array
-from sims.epipolar.drawing import EyeDrawn, Segment
+from sims.epipolar.drawing import CameraDrawing, Segment
 from sims.epipolar.params import OTHERS, EpipolarParams, Place, Side
 from sims.epipolar.readouts import short_trouble
 from sims.epipolar.solution import EpipolarSolution
@@ -27,7 +27,7 @@ class EpipolarScene:
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
-        self.eyes = Eye(stage, "left", "L", "e"), Eye(stage, "right", "R", "e′")
+        self.cameras = CameraInScene(stage, "left", "L", "e"), CameraInScene(stage, "right", "R", "e′")
         self.baseline = stage.lines("/baseline", "ink", width=2.5)
         self.middle = stage.group("/middle")
         self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.5))
@@ -52,8 +52,8 @@ class EpipolarScene:
         self.centers: Segment = (ORIGIN, ORIGIN)
 
     def draw(self, p: EpipolarParams, s: EpipolarSolution) -> None:
-        for drawn, eye, grip in zip((s.drawn.left, s.drawn.right), self.eyes, self.grips, strict=True):
-            eye.draw(drawn)
+        for drawn, camera, grip in zip((s.drawn.left, s.drawn.right), self.cameras, self.grips, strict=True):
+            camera.draw(drawn)
             grip.pose(position=drawn.center)
         self._baseline(p, s)
         self._points(p)
@@ -106,7 +106,7 @@ class Mark:
             self.rays.draw([(center, place) for center in centers])
 
 
-class Eye:
+class CameraInScene:
     """One camera, and what lies on its picture."""
 
     def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str, epipole: str) -> None:
@@ -124,7 +124,7 @@ class Eye:
         stage.label(f"{path}/epipole/label", epipole, (0.0, -0.12, 0.0))
         self.toward = stage.lines(f"{path}/toward", "ink", width=1.2)
 
-    def draw(self, d: EyeDrawn) -> None:
+    def draw(self, d: CameraDrawing) -> None:
         self.figure.node.pose(d.wxyz, d.center)
         self.figure.draw(d.corners, d.size)
         self.post.stroke(((0.0, 0.08, -0.12 * d.size), (0.0, d.center[2], -0.12 * d.size)))

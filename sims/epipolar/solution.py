@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipolar_residual, sampson_distance
-from sims.epipolar.drawing import Drawn, Segment, drawn_size, eye_drawn, plane
+from sims.epipolar.drawing import Drawing, Segment, camera_drawing, drawn_size, plane
 from sims.epipolar.estimate import Estimate, estimate
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
 from sims.epipolar.rig import Pair, Views, existing, existing_line, other_drawings, pair, views
@@ -62,7 +62,7 @@ class EpipolarSolution:
     on_baseline: bool
     picked: Picked | None
     estimate: Estimate
-    drawn: Drawn
+    drawn: Drawing
 
 
 def solve(p: EpipolarParams) -> EpipolarSolution:
@@ -114,11 +114,11 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
 def _drawn(
     p: EpipolarParams, both: Pair, pixels: tuple[Pixel | None, Pixel | None], lines: tuple[Array | None, Array | None],
     picked: Picked | None, aligned: bool,
-) -> Drawn:  # fmt: skip
+) -> Drawing:  # fmt: skip
     size = drawn_size(math.dist(p.left, p.right))
     still = other_drawings(p.left, p.right, p.left_pan, p.right_pan, p.focal, p.points - 1, p.show_all_lines)
     eyes = [
-        eye_drawn(
+        camera_drawing(
             center, wxyz, p.focal, size, pixel=pixel, line=line, epipole=epipole, others=others, all_lines=chords,
             picked=picked.line if picked is not None and picked.side != side else None,
         )
@@ -128,7 +128,7 @@ def _drawn(
         )
     ]  # fmt: skip
     sheet = None if both.F is None or aligned else plane(p.left, p.right, p.point)
-    return Drawn(eyes[0], eyes[1], sheet, None if picked is None else picked.ray)
+    return Drawing(eyes[0], eyes[1], sheet, None if picked is None else picked.ray)
 
 
 def _with_first(left: Array, right: Array, line_left: Array | None, line_right: Array | None, others: Views) -> Views:

@@ -31,7 +31,7 @@ class TriangulationScene:
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
-        self.eyes = [Eye(stage, "left", "L"), Eye(stage, "right", "R")]
+        self.cameras = [CameraInScene(stage, "left", "L"), CameraInScene(stage, "right", "R")]
         self.baseline = stage.lines("/baseline", "ink", width=2.0)
         self.baseline_label = stage.label("/baseline/label", "", (0.0, -0.1, 0.45))
         self.points = {name: Shape(stage, f"/{name}", name) for name in METHODS}
@@ -51,8 +51,8 @@ class TriangulationScene:
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
         cameras = rig(p.baseline, p.focal)
         half = 0.5 * p.baseline
-        for eye, sight, x in zip(self.eyes, (s.sight_left, s.sight_right), (-half, half), strict=True):
-            eye.draw(cameras, s, sight, x)
+        for camera, sight, x in zip(self.cameras, (s.sight_left, s.sight_right), (-half, half), strict=True):
+            camera.draw(cameras, s, sight, x)
         self.baseline.stroke(((-half, 0.0, 1.0), (half, 0.0, 1.0)))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
@@ -67,8 +67,8 @@ class TriangulationScene:
 
     def point(self, name: str) -> None:
         """Light up what somebody points at: an image point's ray, the point of a method, or the true point."""
-        for eye in self.eyes:
-            eye.light(name)
+        for camera in self.cameras:
+            camera.light(name)
         for method, shape in self.points.items():
             shape.lit.show(method == name)
         self.lit.show(name == "true")
@@ -105,7 +105,7 @@ class TriangulationScene:
         self.warning.pose(position=(3.0 * x, 3.0, 1.5))
 
 
-class Eye:
+class CameraInScene:
     """One camera with the pixel that it measured, and the line of sight through it."""
 
     def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str) -> None:
