@@ -21,12 +21,13 @@ PYTHON ?= $(shell for python in python3.13 python3.12 python3.11 python3 python;
 # pytest ends with 5 where ARGS choose none of its tests; without ARGS that is a failure.
 NONE_CHOSEN = test $$? -eq 5 -a -n "$(strip $(ARGS))"
 
-.PHONY: help run test check bench shots lock clean
+.PHONY: help run test fuzz check bench shots lock clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make run     serve the sims at http://$(SIM3_HOST):$(SIM3_PORT)/"
 	@echo "make test    run all tests, those in a browser too (ARGS='-k name' for some)"
+	@echo "make fuzz    try the properties with other examples than make test does (ARGS='-k name' for some)"
 	@echo "make check   lint, format, types, import direction"
 	@echo "make bench   measure speed, beside Open3D where that can be installed"
 	@echo "make shots   take screenshots"
@@ -45,12 +46,16 @@ test: $(VENV)/test.stamp
 	@echo "Running the tests in a browser"
 	@$(BIN) -m pytest -m e2e $(ARGS) || $(NONE_CHOSEN)
 
+fuzz: $(VENV)/test.stamp
+	@echo "Looking for examples that break a property"
+	@SIM3_EXAMPLES=fuzz $(BIN) -m pytest -m "not e2e" --numprocesses auto tests/geometry tests/sims $(ARGS)
+
 check: $(VENV)/test.stamp
-	@echo "Checking lint, format, types and import direction"
+	@echo "Checking lint, format, types, import direction and the rooms of the sims"
 	@$(BIN) -m ruff check
 	@$(BIN) -m ruff format --check
 	@$(BIN) -m mypy
-	@$(BIN) -m pytest --quiet tests/test_imports.py
+	@$(BIN) -m pytest --quiet tests/test_imports.py tests/sims/test_rooms.py
 
 bench: $(BENCH)/bench.stamp
 	@$(BENCH)/bin/python -m tests.browser --ensure

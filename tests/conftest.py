@@ -12,9 +12,11 @@ from hypothesis import settings
 from sims.kit import child
 from tests.server import shared_host
 
-# How long an example takes says nothing on a busy machine. In CI the examples are always the same; elsewhere they vary.
-settings.register_profile("sim3", deadline=None, derandomize="CI" in os.environ)
-settings.load_profile("sim3")
+# The examples of a property are the same in every run, whatever else runs: `make fuzz` looks for others. How long one
+# takes says nothing on a busy machine.
+settings.register_profile("sim3", deadline=None, derandomize=True, database=None, max_examples=60)
+settings.register_profile("fuzz", deadline=None, max_examples=500)
+settings.load_profile(os.environ.get("SIM3_EXAMPLES", "sim3"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
