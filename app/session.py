@@ -13,7 +13,6 @@ import logging
 import re
 import secrets
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from contextvars import copy_context
@@ -373,7 +372,6 @@ class Sessions:
         self._limit = limit
         self._by_room: dict[tuple[str, str], Session] = {}
         self._solver = Solver()
-        self.counts: Counter[str] = Counter()
         self.aside = workers("aside", 1)
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
         self._ahead = workers("ahead", 1)
@@ -405,7 +403,6 @@ class Sessions:
                 self._drop_one()
             session = self._by_room[sim.slug, room] = Session(sim, room, params, self._solver)
             session.waiting = True
-            self.counts["opened"] += 1
             if sim.ahead and sim.slug not in self._begun and session._drawing is not None:
                 self._begun.add(sim.slug)
                 session._drawing.add_done_callback(lambda _: self._work_ahead(sim))

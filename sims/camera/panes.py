@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from sims.camera.params import HEIGHT, WIDTH, CameraParams
+from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, NamedPoint, VanishingPoint
 from sims.camera.world import ROLES, TITLES
-from sims.kit.palette import Palette
+from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import THIN, figure
 
@@ -22,7 +22,7 @@ TOWARDS = {"across": ("eave-near-left", "wall-near-left"), "along": ("roof-far",
 """Ends of edges that are drawn on to where they meet."""
 
 
-def panes(p: CameraParams, s: CameraSolution, palette: Palette) -> Sequence[Pane]:
+def panes(p: CameraParams, s: CameraSolution) -> Sequence[Pane]:
     """One picture."""
     picture = Picture("picture", "Picture", WIDTH, HEIGHT)
     roles = ROLE[s.shown]

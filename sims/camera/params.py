@@ -10,7 +10,6 @@ from sims.kit.params import Params, choice, number, switch, vector
 
 Projection = Literal["perspective", "orthographic", "weak"]
 Pixel = tuple[float, float]
-WIDTH, HEIGHT = 640, 480
 FARTHEST = 20.0
 
 

@@ -14,9 +14,9 @@ from geometry.affine_camera import AffineCamera, weak_perspective
 from geometry.arrays import Array
 from geometry.camera import Camera, pan_tilt_roll
 from geometry.projection import clip_segments, decompose, frame_planes, vanishing_points
-from sims.camera.params import HEIGHT, WIDTH, CameraParams, Pixel
+from sims.camera.params import CameraParams, Pixel
 from sims.camera.world import DIRECTIONS, MIDDLE, NAMES, PLACES, POINTS, SUBJECT, WIRES, Place, Role
-from sims.kit.frame import inside
+from sims.kit.frame import HEIGHT, WIDTH, inside
 
 
 @dataclass(frozen=True)

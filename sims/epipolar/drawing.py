@@ -11,8 +11,8 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.camera import Camera
-from sims.epipolar.params import CENTER, HEIGHT, WIDTH, Pixel, Place
-from sims.kit.frame import across, inside
+from sims.epipolar.params import CENTER, Pixel, Place
+from sims.kit.frame import HEIGHT, WIDTH, across, inside
 
 PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""

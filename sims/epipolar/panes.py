@@ -9,11 +9,11 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.epipolar.drawing import in_picture
-from sims.epipolar.params import HEIGHT, LAST, WIDTH, EpipolarParams, Pixel, Side, title
+from sims.epipolar.params import LAST, EpipolarParams, Pixel, Side, title
 from sims.epipolar.plan import plan
 from sims.epipolar.readouts import epipole_in_words
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.palette import Palette
+from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 
@@ -21,7 +21,7 @@ FIRST = "1"
 """What the 3D point is linked as; the others are by their numbers too."""
 
 
-def panes(p: EpipolarParams, s: EpipolarSolution, palette: Palette) -> Sequence[Pane]:
+def panes(p: EpipolarParams, s: EpipolarSolution) -> Sequence[Pane]:
     """Both pictures, and the plan."""
     pictures = _picture(p, s, "left"), _picture(p, s, "right")
     return (*pictures, plan(p, s)) if p.show_top else pictures

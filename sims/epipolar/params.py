@@ -8,12 +8,12 @@ import numpy as np
 from pydantic import field_validator
 
 from geometry.arrays import Array
+from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params, number, switch, text, vector
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
 Side = Literal["left", "right"]
-WIDTH, HEIGHT = 640, 480
 LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
 CENTER: Pixel = (320.0, 240.0)
 """Principal point of both cameras."""

@@ -9,6 +9,8 @@ import math
 from collections.abc import Sequence
 
 Point = Sequence[float]
+WIDTH, HEIGHT = 640, 480
+"""Pixels of the pictures that the cameras of the sims take."""
 INSET = 14.0
 """Pixels from the picture's edge at which what lies outside is marked."""
 

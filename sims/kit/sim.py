@@ -10,7 +10,6 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from sims.kit.palette import Palette
 from sims.kit.pane import Pane
 from sims.kit.params import Params
 from sims.kit.readout import Readout
@@ -129,7 +128,7 @@ class Sim(Generic[P, S]):
     actions: Sequence[Action[P]] = ()
     view_of: Callable[[P], View] | None = None
     """The first view of a state, where it isn't always `view`."""
-    panes: Callable[[P, S, Palette], Sequence[Pane]] | None = None
+    panes: Callable[[P, S], Sequence[Pane]] | None = None
     selects: str = "selected"
     """The parameter that a click on what is linked across scene, pictures and tables sets."""
     handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)

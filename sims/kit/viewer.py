@@ -225,7 +225,7 @@ class Viewer:
                 preview = self.sim.files.preview(params)
                 set_property(self._preview, "content", "" if preview is None else readout.render([preview]))
             if self._panes is not None and self.sim.panes is not None:
-                panes = self.sim.panes(params, solution, self.palette)
+                panes = self.sim.panes(params, solution)
                 set_property(self._panes, "content", pane.render(panes, self._style))
         self.client.flush()
 

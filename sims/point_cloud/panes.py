@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from sims.kit.palette import RGB, Palette, rgb
+from sims.kit.palette import RGB, rgb
 from sims.kit.pane import Pane
 from sims.kit.plot import Plot, room
 from sims.kit.readout import THIN, figure, quantity
@@ -25,7 +25,7 @@ NAMES = {"height": "Height", "intensity": "Intensity", "variation": "Surface var
 UNITS = {"height": "m", "intensity": "", "variation": ""}
 
 
-def panes(_: CloudParams, s: CloudSolution, __: Palette) -> list[Pane]:
+def panes(_: CloudParams, s: CloudSolution) -> list[Pane]:
     """The colour bar, and in a registration the error of each step."""
     if not s.points_in:
         return []

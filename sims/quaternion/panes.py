@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry.arrays import Array
-from sims.kit.palette import AXES, Palette
+from sims.kit.palette import AXES
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 from sims.kit.sim import View
@@ -45,7 +45,7 @@ def _screen() -> Array:
 SCREEN = _screen()
 
 
-def panes(p: QuaternionParams, s: QuaternionSolution, palette: Palette) -> list[Pane]:
+def panes(p: QuaternionParams, s: QuaternionSolution) -> list[Pane]:
     """The ball with q, −q and the way from start to target."""
     picture = BALL.copy()
     picture.curve(places(s.ball_path), "ink", width=3)

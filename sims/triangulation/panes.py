@@ -10,11 +10,11 @@ from typing import Literal
 import numpy as np
 
 from geometry.triangulation import depth_sigma
-from sims.kit.palette import Palette
+from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
 from sims.kit.plot import Plot, room
 from sims.kit.readout import quantity
-from sims.triangulation.params import HEIGHT, NAMES, WIDTH, Method, Pixel, TriangulationParams
+from sims.triangulation.params import NAMES, Method, Pixel, TriangulationParams
 from sims.triangulation.solution import TriangulationSolution
 
 Side = Literal["left", "right"]
@@ -26,7 +26,7 @@ NO_DEPTH = 4.0
 """Metres for which the plot has room when there is no point."""
 
 
-def panes(p: TriangulationParams, s: TriangulationSolution, palette: Palette) -> Sequence[Pane]:
+def panes(p: TriangulationParams, s: TriangulationSolution) -> Sequence[Pane]:
     """Both pictures and the plot."""
     chosen = s.by_method[p.method]
     times = magnification(chosen.reprojection_left, chosen.reprojection_right)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
+from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params, choice, number, switch, vector
 
 Method = Literal["dlt", "midpoint", "optimal"]
 Pixel = tuple[float, float]
 NAMES: dict[Method, str] = {"dlt": "DLT", "midpoint": "mid-point", "optimal": "optimal"}
-WIDTH, HEIGHT = 640, 480
 LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
 NEAREST, FARTHEST = (-60.0, 0.0, -50.0), (60.0, 100.0, 50.0)
 """Places, in metres, that can be typed."""

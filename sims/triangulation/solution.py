@@ -15,7 +15,8 @@ from geometry import triangulation as tri
 from geometry.arrays import Array
 from geometry.camera import Camera, parallel_rig
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
-from sims.triangulation.params import HEIGHT, WIDTH, Method, Pixel, TriangulationParams
+from sims.kit.frame import HEIGHT, WIDTH
+from sims.triangulation.params import Method, Pixel, TriangulationParams
 
 METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "dlt": tri.triangulate_dlt,

@@ -22,7 +22,6 @@ from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
 from sims.camera.solution import LIFT
 from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
 from sims.kit import readout
-from sims.kit.palette import LIGHT
 from sims.kit.viewer import Look
 from tests.server import Rig
 from tests.sims.markup import words, xml
@@ -163,7 +162,7 @@ def test_every_state_has_an_answer(p: CameraParams) -> None:
     assert np.isfinite(s.wires).all()
     u, v = s.wires[..., 0], s.wires[..., 1]
     assert ((u >= -0.51) & (u <= 639.51) & (v >= -0.51) & (v <= 479.51)).all()
-    for html in (readout.render(SIM.readouts(p, s)), SIM.panes(p, s, LIGHT)[0].svg):  # type: ignore[misc]
+    for html in (readout.render(SIM.readouts(p, s)), SIM.panes(p, s)[0].svg):  # type: ignore[misc]
         assert "nan" not in html.lower()
 
 

@@ -21,7 +21,6 @@ from sims.epipolar.panes import panes
 from sims.epipolar.params import OTHERS
 from sims.kit import readout
 from sims.kit.frame import INSET
-from sims.kit.palette import LIGHT
 from sims.kit.params import BadParams
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
@@ -494,7 +493,7 @@ def shapes(svg: str, tag: str) -> list[dict[str, str]]:
 def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
     p = DRAWN[name]
     s = solve(p)
-    for pane, side in zip(panes(p, s, LIGHT), SIDES, strict=False):
+    for pane, side in zip(panes(p, s), SIDES, strict=False):
         at = [mark_places(pane.svg)[f"{k}"] for k in range(2, p.points + 1)]
         np.testing.assert_allclose(at, pixels_of(s, side)[1:], rtol=0, atol=0.006)
         held = next(g for g in shapes(pane.svg, "g") if g.get("data-handle") == f"{side}_pixel")
@@ -531,7 +530,7 @@ def at_border(place: Array) -> bool:
 def test_an_epipole_that_is_outside_is_marked_at_the_border_in_its_direction(name: str, heads: int) -> None:
     p = DRAWN[name]
     s = solve(p)
-    for pane, pole in zip(panes(p, s, LIGHT), (s.epipole_left_pixel, s.epipole_right_pixel), strict=False):
+    for pane, pole in zip(panes(p, s), (s.epipole_left_pixel, s.epipole_right_pixel), strict=False):
         found = [e for e in xml(pane.svg).iter("g") if "Epipole" in str(e.findtext("title"))]
         assert len(found) == heads
         for mark in found:
@@ -551,7 +550,7 @@ def test_points_that_are_outside_a_picture_are_marked_at_its_border() -> None:
     p = START.changed({"left_pan": 12, "right_pan": -12, "point": (4.0, 3.0, 1.0), "points": 12, "selected": 5})
     s = solve(p)
     out = 0
-    for pane, side in zip(panes(p, s, LIGHT), SIDES, strict=False):
+    for pane, side in zip(panes(p, s), SIDES, strict=False):
         for k, pixel in enumerate(pixels_of(s, side), start=1):
             if in_frame(pixel[None]):
                 assert not any(at_border(moved_to(mark)) for mark in marks(pane.svg, f"{k}"))
@@ -564,18 +563,18 @@ def test_points_that_are_outside_a_picture_are_marked_at_its_border() -> None:
 
 
 def test_both_pictures_can_be_picked_in_and_the_plan_goes_when_told() -> None:
-    left, right, above = panes(START, solve(START), LIGHT)
+    left, right, above = panes(START, solve(START))
     assert 'data-pick="pick_left"' in left.svg
     assert 'data-pick="pick_right"' in right.svg
     assert "data-pick" not in above.svg
     hidden = START.changed({"show_top": False})
-    assert len(panes(hidden, solve(hidden), LIGHT)) == 2
+    assert len(panes(hidden, solve(hidden))) == 2
 
 
 @pytest.mark.parametrize("name", ["defaults", "converging", "forward"])
 def test_the_plan_shows_places_from_above(name: str) -> None:
     p = DRAWN[name]
-    svg = panes(p, solve(p), LIGHT)[2].svg
+    svg = panes(p, solve(p))[2].svg
     for handle in ("left", "right", "point"):
         (g,) = (g for g in shapes(svg, "g") if g.get("data-handle") == f"plan_{handle}")
         at = float(g["data-x"]), float(g["data-y"])
@@ -605,7 +604,7 @@ def test_every_point_is_linked_across_pictures_plan_table_and_scene(rig: Rig) ->
     assert kinds_of(pictures, "1") == ["g"] * 3 + ["line"] * 2, "three handles and two lines"
     assert kinds_of(table, "1") == ["tr s3-selected"]
     assert rig.model.node("/point").clicks
-    assert 'data-link="7"' not in panes(START, solve(START), LIGHT)[0].svg, "it isn't shown"
+    assert 'data-link="7"' not in panes(START, solve(START))[0].svg, "it isn't shown"
 
 
 def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(rig: Rig) -> None:

@@ -19,7 +19,6 @@ from sims.gimbal_lock import SIM, GimbalParams, meshes, solve
 from sims.gimbal_lock.params import NEAR, NEAR_PITCH
 from sims.gimbal_lock.scene import PER_RATE
 from sims.kit import readout
-from sims.kit.palette import LIGHT
 from sims.kit.sim import Action, Step
 from tests.server import Rig
 from tests.sims.markup import words, xml
@@ -483,7 +482,7 @@ def test_marking_leaves_a_ghost_here() -> None:
 def test_plot_marks_the_smallest_singular_value(pitch: float) -> None:
     p = state(pitch=pitch)
     assert SIM.panes is not None
-    svg = SIM.panes(p, solve(p), LIGHT)[0].svg
+    svg = SIM.panes(p, solve(p))[0].svg
     mark = re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)"', svg)
     assert mark is not None
     u, v = float(mark[1]), float(mark[2])

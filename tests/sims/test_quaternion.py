@@ -265,7 +265,7 @@ def test_drawn_paths_begin_at_the_start_and_end_at_the_target(rig: Rig, p: Quate
 
 
 def dots(p: QuaternionParams) -> list[Element]:
-    svg = xml(pane.render(panes(p, solve(p), LIGHT), LIGHT.style()))
+    svg = xml(pane.render(panes(p, solve(p)), LIGHT.style()))
     return [e for e in svg.iter("circle") if e.get("stroke") == "var(--held)"]
 
 
@@ -284,7 +284,7 @@ def test_both_quaternions_are_in_the_picture(angle: float) -> None:
 @pytest.mark.parametrize(("angle", "where"), [(0.0, "−q, farther"), (360.0, "q, farther")])
 def test_a_quaternion_at_infinity_is_pointed_to(angle: float, where: str) -> None:
     p = START.changed({"angle": angle})
-    texts = [e.text for e in xml(pane.render(panes(p, solve(p), LIGHT), LIGHT.style())).iter("text")]
+    texts = [e.text for e in xml(pane.render(panes(p, solve(p)), LIGHT.style())).iter("text")]
     assert where in texts
     assert len(dots(p)) == 1
 

@@ -140,7 +140,7 @@ def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params:
 def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> None:
     solution = sim.solve(params)
     for palette in (LIGHT, DARK):
-        shown = sim.panes(params, solution, palette) if sim.panes else ()
+        shown = sim.panes(params, solution) if sim.panes else ()
         assert len({p.name for p in shown}) == len(shown)
         html = pane.render(shown, palette.style())
         assert not bad_numbers(words(html))
@@ -260,7 +260,7 @@ def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim, tiny: float) -
                     params = start.changed({name: one})
                     solution = sim.solve(params)
                     assert readout.render(sim.readouts(params, solution))
-                    assert sim.panes is None or sim.panes(params, solution, LIGHT)
+                    assert sim.panes is None or sim.panes(params, solution)
 
 
 # ---- what hands do

@@ -20,7 +20,6 @@ from geometry.camera import parallel_rig
 from geometry.triangulation import covariance, monte_carlo
 from sims.kit import readout
 from sims.kit.frame import inside
-from sims.kit.palette import LIGHT
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
 from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, solve
@@ -209,7 +208,7 @@ def test_plot_marks_the_point_on_its_curve_and_its_ghosts_are_half_and_twice_the
     changes: dict[str, Any],
 ) -> None:
     p = START.changed(changes)
-    svg = panes(p, solve(p), LIGHT)[2].svg
+    svg = panes(p, solve(p))[2].svg
     mark = re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)"', svg)
     assert mark is not None
     u, v = float(mark[1]), float(mark[2])
@@ -401,7 +400,7 @@ def test_the_point_can_be_typed_and_hides_where_there_is_none() -> None:
 def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() -> None:
     p = START.changed({"right_uv": (320, 222), "method": "optimal"})
     solution = solve(p)
-    left, right, _ = panes(p, solution, LIGHT)
+    left, right, _ = panes(p, solution)
     for pane, own, other, pixel in ((left, "left", "right", (410.0, 210.0)), (right, "right", "left", (320.0, 222.0))):
         root = xml(pane.svg)
         handle = next(e for e in root.iter() if e.get("data-handle"))
@@ -535,7 +534,7 @@ def test_what_is_outside_a_picture_is_marked_at_its_border() -> None:
     solution = solve(p)
     out = 0
     for pane, side, found in zip(
-        panes(p, solution, LIGHT), ("left", "right"),
+        panes(p, solution), ("left", "right"),
         (solution.by_method["dlt"].pixel_left, solution.by_method["dlt"].pixel_right), strict=False,
     ):  # fmt: skip
         for name, at in (
