@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from sims.kit.params import Complaint, Params, allowed_values, choices, clipped, disagreeing, extra, meant
+from sims.kit.params import Complaint, Params, allowed_values, choices, clipped, extra, meant, refused
 
 P = TypeVar("P", bound=Params)
 LARGEST_WHOLE = 2**53
@@ -62,7 +62,7 @@ def _received(name: str, given: Mapping[str, Any], value: Any) -> Any:
 def _named(model: type[Params], item: Mapping[str, Any]) -> list[tuple[str, str]]:
     if item["loc"]:
         return [(name := str(item["loc"][0]), allowed(model, name))]
-    names, words = disagreeing(item)
+    names, words = refused(item)
     return [(name, words) for name in names if name in model.model_fields] or [("", _names(model))]
 
 

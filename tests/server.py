@@ -33,6 +33,7 @@ from urllib.request import ProxyHandler, build_opener
 
 import viser
 
+from app.commands import Commands
 from app.messages import GuiUpdateMessage, decoder
 from app.session import Sessions
 from sims.kit.params import Params
@@ -226,7 +227,13 @@ class Browser:
 
     def _show(self, look: Look) -> Viewer:
         session = self._session
-        viewer = Viewer(session.sim, self.client, session, look, session.params)
+
+        def tell(message: dict[str, Any]) -> None:
+            for listener in list(session.listeners):
+                listener(message)
+
+        commands = Commands(session, tell)
+        viewer = Viewer(session.sim, self.client, commands, look, session.params)
         session.join(viewer)
         return viewer
 

@@ -116,7 +116,7 @@ class Params(BaseModel):
             entries = value if isinstance(value, tuple) else () if value is None else (value,)
             ranges = self._ranges(name, entries)
             if not all(low <= v <= high for v, (low, high) in zip(entries, ranges, strict=False)):
-                raise ValueError(f"{name} must be {_spans(ranges)}, got {spell(value)}")
+                raise refusal([name], f"{name} must be {_spans(ranges)}, got {spell(value)}")
         return self
 
     def query(self) -> str:
@@ -477,9 +477,9 @@ def allowed_values(field: FieldInfo) -> str:
     return f"a whole number {span}" if field.annotation is int or kind == "option" else f"a number {span}"
 
 
-def disagreement(names: Iterable[str], words: str) -> PydanticCustomError:
-    """The error of a validator for fields that don't go together; the complaint is about each of those named."""
-    return PydanticCustomError("disagreement", "{words}", {"words": words, "names": ",".join(names)})
+def refusal(names: Iterable[str], words: str) -> PydanticCustomError:
+    """The error of a model's validator: which fields it is about, and in words what is wrong with them."""
+    return PydanticCustomError("refusal", "{words}", {"words": words, "names": ",".join(names)})
 
 
 def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[str, str]]:
@@ -488,11 +488,10 @@ def _complaints(model: type[Params], error: ValidationError) -> Iterable[tuple[s
             name = str(item["loc"][0])
             yield name, allowed_values(model.model_fields[name])
         else:
-            names, text = disagreeing(item)
+            names, text = refused(item)
             yield from ((name, text) for name in names)
 
 
-def disagreeing(item: Mapping[str, Any]) -> tuple[list[str], str]:
+def refused(item: Mapping[str, Any]) -> tuple[list[str], str]:
     """The fields that a model's validator complains of, and its words."""
-    text = str(item["msg"]).removeprefix("Value error, ")
-    return str(item.get("ctx", {}).get("names", text.split(" ", 1)[0])).split(","), text
+    return str(item.get("ctx", {}).get("names", "")).split(","), str(item["msg"])

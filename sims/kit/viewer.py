@@ -197,7 +197,7 @@ class Viewer:
         known = self._inputs.get(control)
         if known is None or not received(known.handle, value):
             return False
-        with suppress(LookupError, ValueError):  # no page sends a value that can't be
+        with suppress(LookupError):  # no page sends what isn't offered
             known.take(known.handle.value)
         return True
 

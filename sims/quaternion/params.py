@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, Self
+from typing import Self
 
-from pydantic import ValidationError, model_validator
+from pydantic import model_validator
 
-from sims.kit.params import Params, choice, number, numbers, spell, switch, vector
+from sims.kit.params import Params, choice, number, numbers, refusal, spell, switch, vector
 from sims.quaternion.paths import Name
 
 Triple = tuple[float, float, float]
@@ -84,9 +83,11 @@ class QuaternionParams(Params):
     def _turns(self) -> Self:
         for name in ("axis", "start"):
             if math.hypot(*getattr(self, name)) < SHORTEST:
-                raise ValueError(f"{name} must not be zero: zero has no direction, got {spell(getattr(self, name))}")
+                words = f"{name} must not be zero: zero has no direction, got {spell(getattr(self, name))}"
+                raise refusal([name], words)
         if len(self.history) % 4 or not all(_is_turn(*turn) for turn in self.turns):
-            raise ValueError("history must be turns of four numbers: x, y, z of an axis that isn't zero, and an angle")
+            words = "history must be turns of four numbers: x, y, z of an axis that isn't zero, and an angle"
+            raise refusal(["history"], words)
         return self
 
     @property
@@ -94,15 +95,6 @@ class QuaternionParams(Params):
         """Axis x, y, z and angle in degrees of each turn made."""
         h = self.history
         return [(h[k], h[k + 1], h[k + 2], h[k + 3]) for k in range(0, len(h) - 3, 4)]
-
-    def moved(self, changes: Mapping[str, Any]) -> Self:
-        """As in every sim; but a zero axis gets through to `solve`, whose refusal the learner hears."""
-        try:
-            return super().moved(changes)
-        except ValidationError:
-            if math.hypot(*changes.get("axis", self.axis)) >= SHORTEST:
-                raise
-            return self.model_copy(update={"axis": (0.0, 0.0, 0.0)})
 
 
 def _is_turn(x: float, y: float, z: float, angle: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
-from sims.kit.params import Params, choice, disagreement, letters, numbers, optional, vector
+from sims.kit.params import Params, choice, letters, numbers, optional, refusal, vector
 
 Place = tuple[float, float, float]
 MOST = 8
@@ -79,5 +79,5 @@ class ChainParams(Params):
         if len({len(getattr(self, name)) for name in LISTS}) > 1:
             got = ", ".join(f"{len(getattr(self, name))} {name}" for name in LISTS)
             words = f"as many angles and lengths as letters in axes, one of each for every joint; got {got}"
-            raise disagreement([name for name in LISTS if name in self.model_fields_set], words)
+            raise refusal([name for name in LISTS if name in self.model_fields_set], words)
         return self

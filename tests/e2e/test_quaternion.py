@@ -116,7 +116,7 @@ def test_a_zero_axis_is_refused_and_the_picture_stays(classroom: Classroom) -> N
     third = learner.frame.get_by_role("textbox", name="Axis n, 3 of 3", exact=True)
     third.fill("0")
     third.press("Enter")
-    learner.says("axis is")
+    learner.says("axis must not be zero")
     assert agree(learner, axis=[0, 0, 2]) == solution
     learner.until(lambda: third.input_value() == "2")
 
