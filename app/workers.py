@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 GIVES_WAY = 10
 """Steps of niceness."""
-AT_ONCE, MOST = 2, 8
+AT_ONCE, MOST = 2, 32
 """Threads that solve at once, and with those that have done so for long."""
 LONG = 1.0
 """Seconds after which who solves no longer keeps others from it."""

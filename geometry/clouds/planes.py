@@ -135,5 +135,6 @@ def _refined(centred: Array, center: Array, inliers: Mask, distance: float, up: 
         if (new == inliers).all():
             break
         inliers = new
-    assert found is not None
+    if found is None:
+        raise GeometryError("points", "points among which no plane holds", "points of which some are near to a plane")
     return found

@@ -13,6 +13,10 @@ from .points import Indices, as_cloud
 _FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])  # of a tetrahedron, outwards; opposite vertex i
 
 
+WIDEST = 1e75
+"""Metres between points, from which on the squares of areas overflow."""
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
     """A triangle mesh on given points (N, 3): `triangles` (T, 3) are their indices, counter-clockwise from outside.
@@ -68,6 +72,8 @@ def _delaunay(cloud: Array) -> tuple[Indices, Indices]:
     """Tetrahedra (M, 4), positively oriented, and their neighbours (M, 4), −1 outside."""
     if len(cloud) < 4:
         raise GeometryError("points", f"{len(cloud)} points", "at least four")
+    if not float(np.ptp(cloud, axis=0).max()) < WIDEST:  # Qhull's products overflow, which it doesn't survive
+        raise GeometryError("points", "points over 1e75 m apart", f"points less than {WIDEST:g} m apart")
     try:
         mesh = Delaunay(cloud - cloud.mean(axis=0))
     except QhullError:

@@ -13,6 +13,8 @@ GAP = 10.0
 """How many times as far from the middle as the next nearer point a stray is."""
 STRAYS = 0.01
 """Share of the points that may be strays; more are part of what was measured."""
+DUST, SMALLEST = 1e-9, 1e-15
+"""A share of a cloud's size, and metres: what is smaller is nothing."""
 LEAST = 10
 """Points, from which on there is a rest that some are far from."""
 
@@ -43,6 +45,16 @@ def origin_of(points: Array) -> Array | None:
     """What to take from coordinates (N, 3) where the browser would else lose millimetres; None from near ones."""
     away = np.abs(points).max(axis=0) >= FAR
     return np.where(away, 100.0 * np.round(np.median(points, axis=0) / 100.0), 0.0) if away.any() else None
+
+
+def without_dust(points: Array) -> Array:
+    """Points (N, 3) whose coordinates are zero where they are nothing beside the cloud's size.
+
+    No browser shows a billionth of it. But points so near to each other that the squares of their distances are zero
+    would all be each other's nearest ones, and whoever looks for neighbours would look at all of them.
+    """
+    least = max(SMALLEST, DUST * float(np.abs(points).max(initial=0.0)))
+    return np.where(np.abs(points) < least, 0.0, points)
 
 
 def chosen(count: int, most: int) -> npt.NDArray[np.intp]:

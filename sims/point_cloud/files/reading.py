@@ -70,7 +70,7 @@ def _cloud(name: str, table: Table, roles: Sequence[str], units: str, most: int)
     with np.errstate(invalid="ignore"):
         rows = np.flatnonzero((np.abs(points) < FARTHEST).all(axis=1))
     if not len(rows):
-        raise CloudFileError(f"None of its {len(points):,} points has finite coordinates.")
+        raise CloudFileError(f"None of its {len(points):,} points has coordinates that are finite, and below 1e12.")
     dropped = len(points) - len(rows)
     unit = unit_of(table, roles, points[rows], units)
     points, sensor, center = in_metres(points[rows], unit, table.sensor)
@@ -84,6 +84,7 @@ def _cloud(name: str, table: Table, roles: Sequence[str], units: str, most: int)
     origin = placing.origin_of(points)
     if origin is not None:
         points, sensor = points - origin, None if sensor is None else sensor - origin
+    points = placing.without_dust(points)
     values, notes, cautions = _values(table, by_role, rows)
     strays = int(np.count_nonzero(far))
     said = f"{strays:,} points" if strays > 1 else "1 point"
