@@ -96,3 +96,9 @@ def test_three_points_are_enough() -> None:
     found = ransac_plane(np.eye(3), 1e-9)
     np.testing.assert_allclose(found.normal, np.full(3, 1.0 / math.sqrt(3.0)), atol=1e-12)
     assert found.offset == pytest.approx(-1.0 / math.sqrt(3.0), abs=1e-12)
+
+
+def test_points_over_hundreds_of_powers_of_ten_that_no_plane_holds_are_refused_in_words() -> None:
+    points = 10.0 ** np.random.default_rng(1).uniform(-300.0, 3.0, (2000, 3))
+    with pytest.raises(GeometryError, match="no plane"):
+        ransac_plane(points, 1e-200, up=np.array([0.0, 0.0, 1.0]), tilt=0.35)

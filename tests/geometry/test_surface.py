@@ -104,3 +104,9 @@ def test_what_spans_no_volume_is_refused(name: str) -> None:
 def test_wrong_radii_are_refused(alpha: float) -> None:
     with pytest.raises(GeometryError, match="alpha"):
         alpha_shape(blob(0, 10), alpha)
+
+
+def test_points_so_far_apart_that_qhull_would_not_survive_are_refused() -> None:
+    points = np.random.default_rng(3).random((500, 3)) * 1e150
+    with pytest.raises(GeometryError, match="apart"):
+        alpha_shape(points, 1e149)

@@ -124,3 +124,14 @@ def test_a_learner_sees_what_was_taken_for_what_and_changes_it() -> None:
     assert "no coordinate" in SIM.solve(bad).trouble
     assert p.moved({"file": None}).columns == ""
     del kept
+
+
+def test_coordinates_that_are_nothing_beside_the_clouds_size_are_zero() -> None:
+    """Squares of such distances are zero: a search for neighbours would look at every point for each."""
+    rng = np.random.default_rng(2)
+    spread = 10.0 ** rng.uniform(-300.0, 3.0, (400, 3))
+    for points, least in ((spread, 1e-9 * spread.max()), (1e-310 * rng.random((400, 3)), 1e-15)):
+        cloud = cloud_of("\n".join("{:.17g} {:.17g} {:.17g}".format(*row) for row in points.tolist()), "a.xyz")
+        np.testing.assert_array_equal(cloud.points, np.where(points < least, 0.0, points))
+    millimetre = cloud_of("0.001 0.002 0\n1000 2000 3000\n", "a.xyz")
+    assert millimetre.points[0].tolist() == [0.001, 0.002, 0.0]
