@@ -136,4 +136,4 @@ class CameraInScene:
         self.picked_line.stroke(d.picked_line)
         self.others.show(len(d.others) > 0)
         self.others.points(d.others)
-        self.all_lines.pieces(np.array(d.all_lines))
+        self.all_lines.pieces(np.array(d.all_lines) if d.all_lines else None)

@@ -42,10 +42,11 @@ class CameraFigure:
         for solid in self._solids:
             solid.scale(size)
         self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
-        edges = np.zeros((8, 2, 3))
-        edges[:4, 1] = edges[4:, 0] = corners
-        edges[4:, 1] = np.roll(corners, -1, axis=0)
-        if back is not None:
-            edges[:4, 0] = back
-        self.edges.pieces(edges)
-        self.picture.vertices(corners)
+        if self.node.differs("corners", corners, back):
+            edges = np.zeros((8, 2, 3))
+            edges[:4, 1] = edges[4:, 0] = corners
+            edges[4:, 1] = np.roll(corners, -1, axis=0)
+            if back is not None:
+                edges[:4, 0] = back
+            self.edges.pieces(edges)
+            self.picture.vertices(corners)

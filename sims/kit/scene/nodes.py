@@ -25,6 +25,7 @@ class Node:
     def __init__(self, handle: Any) -> None:
         self.handle = handle
         self._given: dict[str, tuple[Any, ...]] = {}
+        self._assigned: dict[str, Any] = {}
         self._pose: tuple[Any, Any] = (None, None)
         send_pose(handle)
 
@@ -50,23 +51,25 @@ class Node:
         """Stretch it (not what hangs on it): by one factor, or by one along each of its own axes."""
         self._assign("scale", factors)
 
-    def _assign(self, name: str, value: Any) -> None:
-        """Send a property."""
-        if self._differs(name, value):
+    def _assign(self, name: str, value: float | str | tuple[float, ...]) -> None:
+        """Send a property that isn't an array."""
+        if self._assigned.get(name) != value:
+            self._assigned[name] = value
             set_property(self.handle, name, value)
 
-    def _differs(self, what: str, *given: Any) -> bool:
-        """Whether a setter is given something else than last time."""
+    def differs(self, what: str, *given: Any) -> bool:
+        """Whether this is something else than what was given under that name last time."""
         last = self._given.get(what)
-        if last is not None and len(last) == len(given) and all(map(_same, last, given)):
-            return False
         self._given[what] = given
-        return True
+        if last is None or len(last) != len(given):
+            return True
+        for a, b in zip(last, given, strict=True):  # noqa: SIM110 — a generator takes half as long again
+            if a is not b and not _same(a, b):
+                return True
+        return False
 
 
 def _same(a: Any, b: Any) -> bool:
-    if a is b:
-        return True
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return type(a) is type(b) and a.shape == b.shape and bool((a == b).all())
     return bool(a == b)
@@ -82,13 +85,13 @@ class Solid(Node):
     def vertices(self, vertices: npt.NDArray[np.float64] | None) -> None:
         """Move the corners (n, 3) of its faces; hide it where there are none."""
         self.show(vertices is not None)
-        if vertices is not None and self._differs("vertices", vertices):
+        if vertices is not None and self.differs("vertices", vertices):
             set_property(self.handle, "vertices", vertices.astype(np.float32))
 
     def shape(self, vertices: npt.NDArray[np.float64], faces: npt.NDArray[Any]) -> None:
         """Become another body: corners (n, 3), and the three corners of each face (m, 3)."""
         self.vertices(vertices)
-        if self._differs("faces", faces):
+        if self.differs("faces", faces):
             set_property(self.handle, "faces", faces.astype(np.uint32))
 
 
@@ -97,13 +100,14 @@ class Cloud(Node):
 
     def points(self, points: npt.NDArray[np.float64]) -> None:
         """Move the dots to places (n, 3)."""
-        if self._differs("points", points):
+        if self.differs("points", points):
             set_property(self.handle, "points", points.astype(np.float32))
 
     def draw(self, points: npt.NDArray[np.float32], colors: npt.NDArray[np.uint8]) -> None:
         """Dots (n, 3) and their colours (n, 3), as `palette.before_film` makes them."""
-        self._assign("points", points)
-        self._assign("colors", colors)
+        for name, values in (("points", points), ("colors", colors)):
+            if self.differs(name, values):
+                set_property(self.handle, name, values)
 
     def size(self, metres: float) -> None:
         """Diameter of each dot."""
@@ -121,25 +125,25 @@ class Lines(Node):
 
     def path(self, points: npt.ArrayLike) -> None:
         """Draw a polyline through points (n, 3)."""
-        if self._differs("pieces", "path", points):
+        if self.differs("pieces", "path", points):
             self._send(dashes(np.asarray(points, dtype=float), self._dash))
 
     def pieces(self, pieces: npt.NDArray[Any] | None) -> None:
         """Draw pieces (n, 2, 3); hide them where there are none."""
         there = pieces is not None and len(pieces) > 0
         self.show(there)
-        if pieces is not None and there and self._differs("pieces", "pieces", pieces):
+        if pieces is not None and there and self.differs("pieces", "pieces", pieces):
             self._send(pieces)
 
     def stroke(self, ends: Segment | Sequence[Sequence[float]] | None) -> None:
         """Draw one undashed piece; hide it where there is none."""
         self.show(ends is not None)
-        if ends is not None and self._differs("pieces", "stroke", ends):
+        if ends is not None and self.differs("pieces", "stroke", ends):
             self._send(np.array([ends]))
 
     def arc(self, radius: float, angle: float, start: float = 0.0) -> None:
         """Draw a circular arc in the node's own xy plane, counter-clockwise from its x axis (radians)."""
-        if self._differs("pieces", "arc", radius, angle, start):
+        if self.differs("pieces", "arc", radius, angle, start):
             self._send(arc_pieces(radius, angle, start, self._dash))
 
     def _send(self, pieces: npt.NDArray[Any]) -> None:
@@ -154,7 +158,7 @@ class Strokes(Node):
 
     def draw(self, pieces: Sequence[Sequence[Sequence[float]]] | npt.NDArray[np.float64]) -> None:
         """Two ends for each piece (n, 2, 3)."""
-        if self._differs("pieces", pieces):
+        if self.differs("pieces", pieces):
             set_property(self.handle, "points", np.array(pieces, np.float32))
 
 
@@ -178,13 +182,13 @@ class Arrows(Node):
     def between(self, ends: Segment | None) -> None:
         """Place the only one, from tail to tip; hide it where there is none."""
         self.show(ends is not None)
-        if ends is not None and self._differs("points", "one", ends):
+        if ends is not None and self.differs("points", "one", ends):
             set_property(self.handle, "points", np.array([ends], np.float32))
 
     def draw(self, ends: npt.NDArray[np.float64]) -> None:
         """Tails and tips (n, 2, 3); hide them where there are none."""
         self.show(len(ends) > 0)
-        if len(ends) and self._differs("points", "many", ends):
+        if len(ends) and self.differs("points", "many", ends):
             set_property(self.handle, "points", ends.astype(np.float32))
 
     def thickness(self, radius: float) -> None:
