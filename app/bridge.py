@@ -27,7 +27,8 @@ from app.messages import GuiUpdateMessage, decoder
 from app.outgoing import Outgoing
 from app.session import Full, Session, Sessions
 from app.trouble import error_message, refused
-from sims.kit.params import BadParams, Params
+from sims.kit.params import Params
+from sims.kit.refusals import BadParams
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire

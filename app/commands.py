@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from app.session import Session
 from app.trouble import Unknown, error_message, refused
 from app.values import shown, strict
-from sims.kit.params import Complaint
+from sims.kit.refusals import Complaint
 
 LONGEST_GLIDE = 60.0
 """Seconds."""

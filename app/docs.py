@@ -9,6 +9,7 @@ from typing import Any, get_type_hints
 
 from app.values import allowed
 from sims import SIMS
+from sims.kit.fields import Kind, Numeric
 from sims.kit.schema import solution_schema
 from sims.kit.sim import Sim
 
@@ -22,13 +23,13 @@ def described() -> list[tuple[Sim[Any, Any], list[tuple[str, str, str, str]], di
 def _parameters(sim: Sim[Any, Any]) -> list[tuple[str, str, str, str]]:
     start = sim.params().model_dump(mode="json")
     return [
-        (name, json.dumps(start[name]), allowed(sim.params, name), _words(field.description, field))
+        (name, json.dumps(start[name]), allowed(sim.params, name), _words(field.description, sim.params.kinds[name]))
         for name, field in sim.params.model_fields.items()
     ]
 
 
-def _words(description: str | None, field: Any) -> str:
-    unit = (field.json_schema_extra or {}).get("unit", "")
+def _words(description: str | None, kind: Kind) -> str:
+    unit = kind.unit if isinstance(kind, Numeric) else ""
     return f"{description or ''}{f' (in {unit})' if unit else ''}"
 
 

@@ -8,8 +8,10 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
-from sims.kit.params import BadParams, Complaint, Params, clipped, meant, number_text
+from sims.kit.params import Params
+from sims.kit.refusals import BadParams, Complaint
 from sims.kit.sim import Sim
+from sims.kit.spelling import clipped, meant, number_text
 
 Items = Sequence[tuple[str, str]]
 OPTIONS = ("view", "controls", "theme")

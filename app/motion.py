@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from typing import Any
 
-from sims.kit.params import Params, extra, numeric_fields
+from sims.kit.params import Params
 from sims.kit.sim import Step
 
 FRAME = 1 / 30
@@ -30,18 +30,9 @@ def between(a: Any, b: Any, fraction: float) -> Any:
 
 
 def gliding(start: Params, target: Params) -> dict[str, Any]:
-    """The target's numbers that can glide there: vectors, lists of one length, and what has a slider.
-
-    Whole numbers without one, such as that of a selected point, are names and no amounts.
-    """
-    found = {name: (getattr(start, name), getattr(target, name)) for name in numeric_fields(type(target))}
-    return {name: b for name, (a, b) in found.items() if _glides(a, b, extra(type(target).model_fields[name]))}
-
-
-def _glides(a: Any, b: Any, hints: Mapping[str, Any]) -> bool:
-    if isinstance(a, tuple) and isinstance(b, tuple):
-        return len(a) == len(b)
-    return (isinstance(a, float) and isinstance(b, float)) or hints["control"] == "slider"
+    """The target's numbers that can glide there, as their kinds have it."""
+    found = {name: (getattr(start, name), getattr(target, name)) for name in target.numeric}
+    return {name: b for name, (a, b) in found.items() if target.kinds[name].glides(a, b)}
 
 
 async def play(steps: Iterator[Step], now: Callable[[], Params], *, reduced: bool) -> AsyncIterator[Mapping[str, Any]]:

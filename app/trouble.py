@@ -11,8 +11,9 @@ from pydantic import ValidationError
 
 from app.values import complaints, shown
 from geometry import GeometryError
-from sims.kit.params import Complaint, clipped
+from sims.kit.refusals import Complaint
 from sims.kit.sim import Sim
+from sims.kit.spelling import clipped
 
 log = logging.getLogger("sim3")
 

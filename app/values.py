@@ -11,7 +11,10 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from sims.kit.params import Complaint, Params, allowed_values, choices, clipped, extra, meant, refused
+from sims.kit.fields import Choice
+from sims.kit.params import Params
+from sims.kit.refusals import Complaint, refused
+from sims.kit.spelling import clipped, meant
 
 P = TypeVar("P", bound=Params)
 LARGEST_WHOLE = 2**53
@@ -50,7 +53,8 @@ def _meant(model: type[Params], name: str, received: Any) -> str:
     field = model.model_fields.get(name)
     if field is None:
         return meant(name, model.model_fields)
-    return meant(received, choices(field)) if isinstance(received, str) else ""
+    kind = model.kinds[name]
+    return kind.meant(received) if isinstance(received, str) and isinstance(kind, Choice) else ""
 
 
 def _received(name: str, given: Mapping[str, Any], value: Any) -> Any:
@@ -71,9 +75,7 @@ def allowed(model: type[Params], name: str) -> str:
     field = model.model_fields.get(name)
     if field is None:
         return _names(model)
-    words = "true or false" if extra(field).get("control") == "switch" else allowed_values(field)
-    if "low" in extra(field):
-        words = "a list of " + words.removesuffix(", separated by commas")
+    words = model.kinds[name].allowed_in_json
     return words if field.default is not None else f"{words}; or null"
 
 

@@ -25,8 +25,10 @@ from app.settings import ROOT, Settings
 from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import viser_client
-from sims.kit.params import BadParams, Complaint, Params, clipped
+from sims.kit.params import Params
+from sims.kit.refusals import BadParams, Complaint
 from sims.kit.sim import Sim
+from sims.kit.spelling import clipped
 from sims.kit.viser_internals import ViserHost
 
 log = logging.getLogger("sim3")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 from geometry import frames
 from sims.coordinate_frames.conventions import NAMES, Axes, Convention, Handedness, Triple, axes, triple
-from sims.kit.params import Params, choice, number, switch, vector
+from sims.kit.fields import Choice, Slider, Switch, Vector
+from sims.kit.params import Params
 
 GRIDS = {"grid_xy": (0, 1), "grid_xz": (0, 2), "grid_yz": (1, 2)}
 """Switch of each plane, and its two axes."""
@@ -17,37 +18,31 @@ BOUND = 5.0
 class FramesParams(Params):
     """State of the sim. The axes may change while it runs: the point stays where it is, and reads anew."""
 
-    convention: Convention = choice(
-        "opengl", title="Convention", description="Where X, Y and Z point, by the custom of a field or program",
-        labels=dict(NAMES.items()),
-    )  # fmt: skip
-    to: Convention = choice(
-        "opengl",
-        title="Second convention",
-        description="Drawn thin and dashed; the matrix leads to it",
-        labels=dict(NAMES.items()),
-    )
-    handedness: Handedness | None = choice(
-        None, title="Handedness", description="The other one than the convention's own mirrors Z",
-        labels={"right": "Right-handed", "left": "Left-handed"}, absent="As in the convention",
-    )  # fmt: skip
-    point: Triple = vector(
-        (1.0, 0.8, 0.6), -BOUND, BOUND, step=0.05, title="Point x, y, z",
-        description="In the axes of the convention; where w isn't 1, the point is these divided by w",
-    )  # fmt: skip
-    w: float = number(
-        1, 0, 2, step=0.01, title="Fourth coordinate", symbol="w",
-        description="The point is (x/w, y/w, z/w); with w = 0 it is a direction",
-    )  # fmt: skip
-    show_rule: bool = switch(
-        True, title="Show hand", description="The rule of the right hand, or of the left for left-handed axes"
-    )
-    rule: float = number(
-        1, 0, 1, step=0.01, title="Fingers", description="How far the fingers have swept: 0 along X, 1 along Y"
-    )
-    grid_xy: bool = switch(False, title="Grid XY", description="The plane of X and Y, where z is zero")
-    grid_xz: bool = switch(False, title="Grid XZ", description="The plane of X and Z, where y is zero")
-    grid_yz: bool = switch(False, title="Grid YZ", description="The plane of Y and Z, where x is zero")
+    convention: Annotated[Convention, Choice(title="Convention", labels=dict(NAMES.items()))] = "opengl"
+    """Where X, Y and Z point, by the custom of a field or program"""
+    to: Annotated[Convention, Choice(title="Second convention", labels=dict(NAMES.items()))] = "opengl"
+    """Drawn thin and dashed; the matrix leads to it"""
+    handedness: Annotated[
+        Handedness | None,
+        Choice(
+            title="Handedness", labels={"right": "Right-handed", "left": "Left-handed"}, absent="As in the convention"
+        ),
+    ] = None
+    """The other one than the convention's own mirrors Z"""
+    point: Annotated[Triple, Vector(-BOUND, BOUND, step=0.05, title="Point x, y, z")] = (1.0, 0.8, 0.6)
+    """In the axes of the convention; where w isn't 1, the point is these divided by w"""
+    w: Annotated[float, Slider(0, 2, step=0.01, symbol="w", title="Fourth coordinate")] = 1
+    """The point is (x/w, y/w, z/w); with w = 0 it is a direction"""
+    show_rule: Annotated[bool, Switch(title="Show hand")] = True
+    """The rule of the right hand, or of the left for left-handed axes"""
+    rule: Annotated[float, Slider(0, 1, step=0.01, title="Fingers")] = 1
+    """How far the fingers have swept: 0 along X, 1 along Y"""
+    grid_xy: Annotated[bool, Switch(title="Grid XY")] = False
+    """The plane of X and Y, where z is zero"""
+    grid_xz: Annotated[bool, Switch(title="Grid XZ")] = False
+    """The plane of X and Z, where y is zero"""
+    grid_yz: Annotated[bool, Switch(title="Grid YZ")] = False
+    """The plane of Y and Z, where x is zero"""
 
     @property
     def axes(self) -> Axes:

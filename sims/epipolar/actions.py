@@ -7,8 +7,8 @@ from typing import Any
 
 from sims.epipolar.params import LAST, LAST_SEED, LEFT, POINT, RIGHT, EpipolarParams, Side
 from sims.epipolar.rig import camera
-from sims.kit.params import plain
 from sims.kit.sim import Step
+from sims.kit.spelling import plain
 
 PRESETS: dict[str, dict[str, Any]] = {
     "rectified": {"left": LEFT, "right": RIGHT, "left_pan": 0.0, "right_pan": 0.0},

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import field_validator
 
 from geometry.arrays import Array
+from sims.kit.fields import NumberBox, Slider, Switch, Text, Vector
 from sims.kit.frame import HEIGHT, WIDTH
-from sims.kit.params import Params, number, switch, text, vector
+from sims.kit.params import Params
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
@@ -33,56 +34,44 @@ OTHERS: Array = np.array(
 class EpipolarParams(Params):
     """State of the sim."""
 
-    left: Place = vector(
-        LEFT, (-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera",
-        description="Centre of the left camera: X, Y, Z",
-    )  # fmt: skip
-    right: Place = vector(
-        RIGHT, (-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Right camera",
-        description="Centre of the right camera: X, Y, Z",
-    )  # fmt: skip
-    left_pan: float = number(
-        0, -60, 60, step=0.5, unit="°", title="Left pan",
-        description="Turn of the left camera about the vertical; positive is to its left",
-    )  # fmt: skip
-    right_pan: float = number(
-        0, -60, 60, step=0.5, unit="°", title="Right pan",
-        description="Turn of the right camera about the vertical; positive is to its left",
-    )  # fmt: skip
-    focal: float = number(
-        600, 200, 1500, step=10, unit="px", title="Focal length", symbol="f", description="Of both cameras"
+    left: Annotated[Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera")] = LEFT
+    """Centre of the left camera: X, Y, Z"""
+    right: Annotated[Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Right camera")] = (
+        RIGHT
     )
-    point: Place = vector(
-        POINT, (-5.0, -3.0, -2.0), (5.0, 12.0, 5.0), step=0.01, unit="m", title="3D point",
-        description="The first point, which you can also drag in the scene: X, Y, Z",
-    )  # fmt: skip
-    points: int = number(
-        6, 1, 12, step=1, title="Points", description="How many points are shown, the 3D point among them"
-    )
-    show_plane: bool = switch(
-        True, title="Show epipolar plane", description="The plane through both camera centres and the 3D point"
-    )
-    show_all_lines: bool = switch(
-        False, title="Show all epipolar lines", description="The lines of all points, and not of the 3D point alone"
-    )
-    show_top: bool = switch(True, title="Show from above", description="A plan of the scene below the pictures")
-    selected: int = number(
-        1, 1, 12, step=1, title="Selected point", control="none",
-        description="The point that is marked everywhere, by its number; 1 is the 3D point. A click chooses another",
-    )  # fmt: skip
-    noise: float = number(
-        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
-        description="Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off",
-    )  # fmt: skip
-    seed: int = number(
-        0, 0, LAST_SEED, step=1, title="Sample", description="Seed of the noise: the same seed, the same noise",
-        control="number",
-    )  # fmt: skip
-    pick: str | None = text(
-        title="Picked pixel", description="A pixel of one picture; its epipolar line is shown in the other",
-        pattern=r"^(left|right):[0-9.e-]{1,24},[0-9.e-]{1,24}$",
-        allowed="left:u,v or right:u,v, with u from 0 to 639 and v from 0 to 479",
-    )  # fmt: skip
+    """Centre of the right camera: X, Y, Z"""
+    left_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Left pan")] = 0
+    """Turn of the left camera about the vertical; positive is to its left"""
+    right_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Right pan")] = 0
+    """Turn of the right camera about the vertical; positive is to its left"""
+    focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
+    """Of both cameras"""
+    point: Annotated[Place, Vector((-5.0, -3.0, -2.0), (5.0, 12.0, 5.0), step=0.01, unit="m", title="3D point")] = POINT
+    """The first point, which you can also drag in the scene: X, Y, Z"""
+    points: Annotated[int, Slider(1, 12, step=1, title="Points")] = 6
+    """How many points are shown, the 3D point among them"""
+    show_plane: Annotated[bool, Switch(title="Show epipolar plane")] = True
+    """The plane through both camera centres and the 3D point"""
+    show_all_lines: Annotated[bool, Switch(title="Show all epipolar lines")] = False
+    """The lines of all points, and not of the 3D point alone"""
+    show_top: Annotated[bool, Switch(title="Show from above")] = True
+    """A plan of the scene below the pictures"""
+    selected: Annotated[int, NumberBox(1, 12, step=1, title="Selected point", hidden=True)] = 1
+    """The point that is marked everywhere, by its number; 1 is the 3D point. A click chooses another"""
+    noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise")] = 0
+    """Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off"""
+    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample")] = 0
+    """Seed of the noise: the same seed, the same noise"""
+    pick: Annotated[
+        str | None,
+        Text(
+            title="Picked pixel",
+            pattern=r"^(left|right):[0-9.e-]{1,24},[0-9.e-]{1,24}$",
+            format="left:u,v or right:u,v, with u from 0 to 639 and v from 0 to 479",
+            hidden=True,
+        ),
+    ] = None
+    """A pixel of one picture; its epipolar line is shown in the other"""
 
     @field_validator("pick")
     @classmethod

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from geometry import euler
-from sims.kit.params import Params, choice, number
+from sims.kit.fields import Choice, Slider
+from sims.kit.params import Params
 
 Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz"]
 NEAR_LOCK = 15.0
@@ -24,52 +25,21 @@ PROPER = {"yaw": "First α", "pitch": "Second β", "roll": "Third γ"}
 class EulerParams(Params):
     """State of the sim."""
 
-    order: Order = choice(
-        "zyx", title="Order", description="Axes of the three turns, in the order in which they are made",
-        labels={o: o.upper() for o in euler.ORDERS},
-    )  # fmt: skip
-    frame: Literal["intrinsic", "extrinsic"] = choice(
-        "intrinsic", title="Frame", description="Turns about the aircraft's own axes, or about the world's",
-        labels={"intrinsic": "Intrinsic: own axes", "extrinsic": "Extrinsic: fixed axes"},
-    )  # fmt: skip
-    yaw: float = number(
-        30,
-        -180,
-        180,
-        step=1,
-        unit="°",
-        title="Yaw",
-        symbol="ψ",
-        description="Angle about Z; first angle of a proper Euler order",
-    )
-    pitch: float = number(
-        20,
-        -90,
-        180,
-        step=1,
-        unit="°",
-        title="Pitch",
-        symbol="θ",
-        description="Angle about Y; second angle of a proper Euler order",
-    )
-    roll: float = number(
-        10,
-        -180,
-        180,
-        step=1,
-        unit="°",
-        title="Roll",
-        symbol="φ",
-        description="Angle about X; third angle of a proper Euler order",
-    )
-    progress: float = number(
-        3,
-        0,
-        3,
-        step=0.01,
-        title="Progress",
-        description="How much of the sequence is applied: 1 is the first turn, 3 all of it",
-    )
+    order: Annotated[Order, Choice(title="Order", labels={o: o.upper() for o in euler.ORDERS})] = "zyx"
+    """Axes of the three turns, in the order in which they are made"""
+    frame: Annotated[
+        Literal["intrinsic", "extrinsic"],
+        Choice(title="Frame", labels={"intrinsic": "Intrinsic: own axes", "extrinsic": "Extrinsic: fixed axes"}),
+    ] = "intrinsic"
+    """Turns about the aircraft's own axes, or about the world's"""
+    yaw: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="ψ", title="Yaw")] = 30
+    """Angle about Z; first angle of a proper Euler order"""
+    pitch: Annotated[float, Slider(-90, 180, step=1, unit="°", symbol="θ", title="Pitch")] = 20
+    """Angle about Y; second angle of a proper Euler order"""
+    roll: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="φ", title="Roll")] = 10
+    """Angle about X; third angle of a proper Euler order"""
+    progress: Annotated[float, Slider(0, 3, step=0.01, title="Progress")] = 3
+    """How much of the sequence is applied: 1 is the first turn, 3 all of it"""
 
     @property
     def proper(self) -> bool:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
-from sims.kit.params import Params, number, switch, vector
+from sims.kit.fields import Slider, Switch, Vector
+from sims.kit.params import Params
 
 NEAR = 0.2
 """The smallest singular value below which the sim warns."""
@@ -15,28 +17,20 @@ NEAR_PITCH = math.degrees(math.asin(1.0 - NEAR**2))
 class GimbalParams(Params):
     """State of the sim."""
 
-    yaw: float = number(
-        0, -180, 180, step=1, unit="°", title="Outer yaw", symbol="ψ",
-        description="Turn of the outer ring in the stand, about Z",
-    )  # fmt: skip
-    pitch: float = number(
-        0, -180, 180, step=1, unit="°", title="Middle pitch", symbol="θ",
-        description="Turn of the middle ring in the outer one, about its Y",
-    )  # fmt: skip
-    roll: float = number(
-        0, -180, 180, step=1, unit="°", title="Inner roll", symbol="φ",
-        description="Turn of the inner ring in the middle one, about its X; the aircraft is fixed in it",
-    )  # fmt: skip
-    show_reach: bool = switch(
-        True, title="Show reach", description="The angular velocities that the three rings can make together"
-    )
-    show_ghost: bool = switch(
-        False, title="Show ghost", description="A second aircraft at a marked orientation, to compare with"
-    )
-    ghost: tuple[float, float, float] = vector(
-        (0.0, 0.0, 0.0), -180.0, 180.0, step=1, unit="°", title="Ghost", control="none",
-        description="Yaw, pitch and roll of the marked orientation",
-    )  # fmt: skip
+    yaw: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="ψ", title="Outer yaw")] = 0
+    """Turn of the outer ring in the stand, about Z"""
+    pitch: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="θ", title="Middle pitch")] = 0
+    """Turn of the middle ring in the outer one, about its Y"""
+    roll: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="φ", title="Inner roll")] = 0
+    """Turn of the inner ring in the middle one, about its X; the aircraft is fixed in it"""
+    show_reach: Annotated[bool, Switch(title="Show reach")] = True
+    """The angular velocities that the three rings can make together"""
+    show_ghost: Annotated[bool, Switch(title="Show ghost")] = False
+    """A second aircraft at a marked orientation, to compare with"""
+    ghost: Annotated[
+        tuple[float, float, float], Vector(-180.0, 180.0, step=1, unit="°", title="Ghost", hidden=True)
+    ] = (0.0, 0.0, 0.0)
+    """Yaw, pitch and roll of the marked orientation"""
 
     @property
     def angles(self) -> tuple[float, float, float]:

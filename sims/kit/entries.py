@@ -8,7 +8,8 @@ from typing import Any
 
 import viser
 
-from sims.kit.params import Params, extra
+from sims.kit.fields import Letters, Numbers
+from sims.kit.params import Params
 from sims.kit.viser_internals import set_property, set_value
 
 Take = Callable[[Any], None]
@@ -16,7 +17,8 @@ Take = Callable[[Any], None]
 
 def worded_entry(params: Params, name: str, k: int) -> str:
     """Words beside the control of one entry, with the unit."""
-    unit = extra(type(params).model_fields[name]).get("unit")
+    kind = params.kinds[name]
+    unit = kind.unit if isinstance(kind, Numbers) else ""
     return params.entry_label(name, k) + (f" ({unit})" if unit else "")
 
 
@@ -27,23 +29,24 @@ class Entries:
         self, gui: viser.GuiApi, params: Params, name: str, shared: Mapping[str, Any],
         listen: Callable[[Any, Take], None], change: Callable[[Mapping[str, Any]], None],
     ) -> None:  # fmt: skip
-        hints = extra(type(params).model_fields[name])
+        kind = params.kinds[name]
+        assert isinstance(kind, Numbers | Letters)
         self.name = name
-        self._labels: dict[str, str] | None = hints.get("labels")
+        self._labels = kind.labels if isinstance(kind, Letters) else None
         self._letters = {shown: letter for letter, shown in (self._labels or {}).items()}
-        self._absent = min(hints["labels"]) if self._labels else min(max(0.0, hints["low"]), hints["high"])
+        self._absent: Any = min(kind.labels) if isinstance(kind, Letters) else min(max(0.0, kind.low), kind.high)
         """What a hidden control says, so that every page says the same."""
-        self._handles = [self._add(gui, params, k, hints, shared) for k in range(hints["most"])]
+        self._handles = [self._add(gui, params, k, shared) for k in range(kind.most)]
         self._count = len(self._handles)
         for k, handle in enumerate(self._handles):
             listen(handle, partial(self._taken, change, f"{name}.{k}"))
 
-    def _add(self, gui: viser.GuiApi, params: Params, k: int, hints: Mapping[str, Any], shared: Any) -> Any:
+    def _add(self, gui: viser.GuiApi, params: Params, k: int, shared: Any) -> Any:
         label = worded_entry(params, self.name, k)
         start = self._shown(self._absent)
         if self._labels:
             return gui.add_dropdown(label, tuple(self._letters), initial_value=start, **shared)
-        return gui.add_slider(label, *params.bounds(self.name), hints["step"], start, **shared)
+        return gui.add_slider(label, *params.bounds(self.name), params.increment(self.name), start, **shared)
 
     def _taken(self, change: Callable[[Mapping[str, Any]], None], entry: str, shown: Any) -> None:
         change({entry: self._letters.get(shown, shown)})

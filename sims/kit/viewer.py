@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from decimal import Decimal
 from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple, Protocol
@@ -16,13 +15,13 @@ import viser
 
 from geometry import GeometryError
 from sims.kit import pane, readout
-from sims.kit.entries import Entries
+from sims.kit.controls import Control, TypedPlace, controls, worded
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, entry_bounds, extra
+from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import Sim, Typed
 from sims.kit.types import Place
-from sims.kit.viser_internals import control_id, received, set_property, set_value
+from sims.kit.viser_internals import control_id, received, set_property
 
 ACCENT = (11, 95, 215)
 NARROW, PHONE = 900, 576
@@ -33,8 +32,6 @@ LOW = 500
 """Pixels of a page's height below which a bottom sheet has room for one thing."""
 FARTHEST = 1e4
 """Metres that a viewpoint may be away."""
-OTHER = "another"
-"""What a list of presets shows for a value that isn't one of them."""
 
 
 class Host(Protocol):
@@ -73,82 +70,11 @@ class Look:
         return self.height < LOW
 
 
-@dataclass
-class Control:
-    """A viser control of one field."""
-
-    name: str
-    handle: Any
-    label: str
-    bounds: tuple[float, float] | None = None
-    """Least and greatest value, for the controls whose bounds may change."""
-    offered: Mapping[Any, str] | None = None
-    """Of a dropdown: each value of the parameter, and how it is shown."""
-    absent: float | None = None
-    """What stands for a number that isn't there."""
-    increment: float | None = None
-    """By how much a step of a slider changes it."""
-
-    def draw(self, params: Params) -> None:
-        value = getattr(params, self.name)
-        if self.offered is not None:
-            value = self.offered[value]
-        set_value(self.handle, self.absent if value is None else value)
-
-    def value(self, shown: Any) -> Any:
-        """What the learner set. Raises LookupError for what isn't offered."""
-        if self.offered is None:
-            return None if self.absent is not None and shown == self.absent else shown
-        return {words: value for value, words in self.offered.items()}[shown]
-
-    def reword(self, params: Params) -> None:
-        """Adapt label, bounds and what is offered, before a value that needs them is drawn."""
-        if self.offered is not None and (offered := params.options(self.name)) != self.offered:
-            self.offered = offered
-            set_property(self.handle, "options", tuple(offered.values()))
-        if self.bounds is not None and (bounds := params.bounds(self.name)) != self.bounds:
-            self.bounds = bounds
-            self.handle.min, self.handle.max = bounds
-        if self.increment is not None and (increment := params.increment(self.name)) != self.increment:
-            self.increment = self.handle.step = increment
-            self.handle.precision = decimals(increment)
-        if (label := worded(params, self.name)) != self.label:
-            self.label = self.handle.label = label
-
-
 class Input(NamedTuple):
     """A control that a page can set, and what becomes of its value."""
 
     handle: Any
     take: Callable[[Any], None]
-
-
-@dataclass(kw_only=True)
-class Preset(Control):
-    """A dropdown beside another control, with names for some of its values."""
-
-    words: Mapping[Any, str]
-
-    def draw(self, params: Params) -> None:
-        set_value(self.handle, self.words.get(getattr(params, self.name), OTHER))
-
-    def reword(self, params: Params) -> None:
-        """Its words don't depend on the state."""
-
-
-@dataclass
-class TypedPlace:
-    """Three numbers that set what dragging a node sets; hidden while there is no such place."""
-
-    typed: Typed[Any, Any]
-    handle: Any
-    visible: bool = True
-
-    def draw(self, params: Params, solution: Any) -> None:
-        place = self.typed.place(params, solution)
-        set_value(self.handle, place or (0.0, 0.0, 0.0))
-        if self.visible != (place is not None):
-            self.visible = self.handle.visible = place is not None
 
 
 class Viewer:
@@ -174,7 +100,7 @@ class Viewer:
         held = any(not name.startswith("/") for name in sim.handles)
         first = not (look.phone or look.narrow) or (not look.low and (held or not look.phone))
         self._panes = self._add_panes() if first else None
-        self._controls: list[Control | Entries] = []
+        self._controls: list[Control] = []
         self._places: list[TypedPlace] = []
         self._readouts: viser.GuiHtmlHandle | None = None
         self._preview: viser.GuiHtmlHandle | None = None
@@ -296,17 +222,18 @@ class Viewer:
 
     def _add_controls(self, params: Params) -> None:
         gui = self.client.gui
-        model = type(params)
         groups: dict[str, list[str]] = {}
-        for name, field in model.model_fields.items():
-            if extra(field).get("control", "none") != "none":
-                groups.setdefault(extra(field).get("group", ""), []).append(name)
+        for name, kind in params.kinds.items():
+            if not kind.hidden:
+                groups.setdefault(kind.group, []).append(name)
         for group, names in groups.items():
             with gui.add_folder(group or "Parameters", expand_by_default=not group):
                 for name in names:
                     if self.sim.files is not None and name == self.sim.files.previewed:
                         self._preview = gui.add_html("")
-                    self._controls += [self._control(params, name), *self._presets(params, name)]
+                    self._controls += controls(
+                        gui, params, name, disabled=self.look.watching, listen=self._listen, change=self._host.change
+                    )
                 if self.sim.files is not None and group == self.sim.files.group:
                     gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))
                 if not group:
@@ -333,56 +260,6 @@ class Viewer:
     def _listen(self, handle: Any, take: Callable[[Any], None]) -> None:
         self._inputs[control_id(handle)] = Input(handle, take)
 
-    def _control(self, params: Params, name: str) -> Control | Entries:
-        field = type(params).model_fields[name]
-        hints = extra(field)
-        value = getattr(params, name)
-        gui = self.client.gui
-        shared: dict[str, Any] = {"hint": field.description, "disabled": self.look.watching}
-        label = worded(params, name)
-        bounds: tuple[float, float] | None = None
-        offered: Mapping[Any, str] | None = None
-        absent: float | None = None
-        increment: float | None = None
-        handle: Any
-        if hints["control"] in ("numbers", "letters"):
-            return Entries(gui, params, name, shared, self._listen, self._host.change)
-        if hints["control"] in ("choice", "option"):
-            offered = params.options(name)
-            handle = gui.add_dropdown(label, tuple(offered.values()), initial_value=offered[value], **shared)
-        elif hints["control"] == "switch":
-            handle = gui.add_checkbox(label, value, **shared)
-        elif isinstance(field.default, tuple):
-            add: Any = gui.add_vector2 if len(field.default) == 2 else gui.add_vector3
-            least, greatest = entry_bounds(field)
-            handle = add(label, value, min=least, max=greatest, step=hints["step"], **shared)
-        elif hints["control"] == "number":
-            low, high = params.bounds(name)
-            if field.default is None:
-                low = absent = low - hints["step"]
-            value = absent if value is None else value
-            handle = gui.add_number(label, value, min=low, max=high, step=hints["step"], **shared)
-        else:
-            bounds = params.bounds(name)
-            increment = params.increment(name)
-            handle = gui.add_slider(label, *bounds, increment, value, **shared)
-
-        control = Control(name, handle, label, bounds, offered, absent, increment)
-        self._listen(handle, lambda shown: self._host.change({name: control.value(shown)}))
-        return control
-
-    def _presets(self, params: Params, name: str) -> list[Control]:
-        """A list of values for a field to choose from, if it has any; it says so when the value is none of them."""
-        field = type(params).model_fields[name]
-        presets: dict[str, Any] = extra(field).get("presets", {})
-        if not presets:
-            return []
-        handle = self.client.gui.add_dropdown(
-            f"{field.title}: preset", (*presets, OTHER), hint="Values to choose from", disabled=self.look.watching
-        )
-        self._listen(handle, lambda shown: self._host.change({name: presets[shown]} if shown in presets else {}))
-        return [Preset(name, handle, worded(params, name), words={value: word for word, value in presets.items()})]
-
     def _typed(self, typed: Typed[Any, Any]) -> TypedPlace:
         handle = self.client.gui.add_vector3(
             f"{typed.title} ({typed.unit})", (0.0, 0.0, 0.0), min=typed.low, max=typed.high, step=typed.step,
@@ -405,23 +282,12 @@ class Viewer:
             self._host.drag(name, place)
 
 
-def worded(params: Params, name: str) -> str:
-    """The label of a control, with its unit."""
-    unit = _unit(type(params), name)
-    return f"{params.label(name)} ({unit})" if unit else params.label(name)
-
-
 @lru_cache(maxsize=256)
 def _marks(regions: tuple[tuple[str, tuple[float, float], tuple[tuple[float, float], ...]], ...]) -> str:
     spans = {
         label: [[(v - low) / (high - low) for v in span] for span in parts] for label, (low, high), parts in regions
     }
     return f'<span hidden data-s3-regions="{escape(json.dumps(spans))}"></span>' if spans else ""
-
-
-@lru_cache(maxsize=1024)
-def _unit(model: type[Params], name: str) -> str:
-    return str(extra(model.model_fields[name]).get("unit", ""))
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:
@@ -437,11 +303,6 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
         f"{files}</div>"
     )
-
-
-def decimals(increment: float) -> int:
-    """How many decimals a slider of such steps needs."""
-    return min(max(-int(Decimal(f"{increment:.3g}").normalize().as_tuple().exponent), 0), 9)
 
 
 def bring(endings: Sequence[str], *, disabled: bool) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
 
-from sims.kit.params import Params, choice, letters, number, spell, switch, text
+from sims.kit.fields import Choice, Letters, NumberBox, Slider, Switch, Text
+from sims.kit.params import Params
 from sims.kit.sim import View
+from sims.kit.spelling import spell
 from sims.point_cloud import library, processes
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import ROLES, letters_of
@@ -47,94 +49,114 @@ def first_step(process: Any) -> int:
 
 
 class CloudParams(Params):
-    dataset: Literal["room", "street", "statue", "two-scans", "file"] = choice(
-        "room", title="Dataset", description="Which cloud. The first four were simulated: rays cast at simple bodies",
-        labels={
-            "room": "Room, colour scanner",
-            "street": "Street, rotating lidar",
-            "statue": "Statue, noise and outliers",
-            "two-scans": "Two scans of a court",
-            "file": "From a file",
-        },
-    )  # fmt: skip
-    color: Literal["height", "intensity", "rgb", "normals", "variation"] = choice(
-        "rgb", title="Colour by", description="What the colour of each point says",
-        labels={
-            "height": "Height",
-            "intensity": "Intensity",
-            "rgb": "Measured colour",
-            "normals": "Normals",
-            "variation": "Surface variation",
-        },
-    )  # fmt: skip
-    point_size: float = number(
-        2.0, 0.5, 10.0, step=0.5, title="Point size", description="About in pixels, as the sim opens"
-    )
-    voxel_size: float = number(
-        0.0, 0.0, LONGEST, step=0.005, unit="m", title="Voxel size",
-        description="Edge of the cells; the points in each become their mean. At 0 all points are shown. At most 1 m, "
-        "but for a file",
-    )  # fmt: skip
-    show_normals: bool = switch(False, title="Normals", description="Short arrows along some normals")
-    neighbors: int = number(
-        16, 5, 50, step=1, title="Neighbours k",
-        description="How many nearest points, itself included, a normal and an outlier are judged by",
-    )  # fmt: skip
-    show_box: bool = switch(True, title="Bounding box", description="The box along the axes that all points are in")
-    selected: int | None = number(
-        None, 0, MOST_POINTS - 1, step=1, title="Selected point", control="number",
-        description="Click a point, or type its number; −1 for none",
-    )  # fmt: skip
-    process: Literal["none", "ground", "clusters", "outliers", "register", "surface"] = choice(
-        "none", title="Process", description="What to do with the points that are left after downsampling",
-        labels={
-            "none": "None",
-            "ground": "Ground plane (RANSAC)",
-            "clusters": "Euclidean clusters",
-            "outliers": "Remove outliers",
-            "register": "Register two scans (ICP)",
-            "surface": "Surface (alpha shape)",
-        },
-    )  # fmt: skip
-    step: int = number(
-        2, 0, MOST_STEPS, step=1, title="Step",
-        description="How far the process has come: 0 before, 1 found, 2 done, as at first; in a registration, steps "
-        "of ICP, at first 0",
-    )  # fmt: skip
-    method: Literal["plane", "point"] = choice(
-        "plane", title="ICP pairs", description="What each point of the second scan is drawn to",
-        labels={"plane": "Point to plane", "point": "Point to point"}, group="Settings of the process",
-    )  # fmt: skip
-    distance: float = number(
-        0.0, 0.0, LONGEST, step=0.01, unit="m", title="Distance of the process", group="Settings of the process",
-        description="At 0 it follows from how dense the cloud is. At most 2 m, but for a file",
-    )  # fmt: skip
-    deviations: float = number(
-        2.0, 0.5, 4.0, step=0.1, title="Deviations of an outlier", group="Settings of the process",
-        description="Outliers are this many standard deviations farther from their neighbours than is usual",
-    )  # fmt: skip
+    dataset: Annotated[
+        Literal["room", "street", "statue", "two-scans", "file"],
+        Choice(
+            title="Dataset",
+            labels={
+                "room": "Room, colour scanner",
+                "street": "Street, rotating lidar",
+                "statue": "Statue, noise and outliers",
+                "two-scans": "Two scans of a court",
+                "file": "From a file",
+            },
+        ),
+    ] = "room"
+    """Which cloud. The first four were simulated: rays cast at simple bodies"""
+    color: Annotated[
+        Literal["height", "intensity", "rgb", "normals", "variation"],
+        Choice(
+            title="Colour by",
+            labels={
+                "height": "Height",
+                "intensity": "Intensity",
+                "rgb": "Measured colour",
+                "normals": "Normals",
+                "variation": "Surface variation",
+            },
+        ),
+    ] = "rgb"
+    """What the colour of each point says"""
+    point_size: Annotated[float, Slider(0.5, 10.0, step=0.5, title="Point size")] = 2.0
+    """About in pixels, as the sim opens"""
+    voxel_size: Annotated[float, Slider(0.0, LONGEST, step=0.005, unit="m", title="Voxel size")] = 0.0
+    """Edge of the cells; the points in each become their mean. At 0 all are shown. At most 1 m, but for a file"""
+    show_normals: Annotated[bool, Switch(title="Normals")] = False
+    """Short arrows along some normals"""
+    neighbors: Annotated[int, Slider(5, 50, step=1, title="Neighbours k")] = 16
+    """How many nearest points, itself included, a normal and an outlier are judged by"""
+    show_box: Annotated[bool, Switch(title="Bounding box")] = True
+    """The box along the axes that all points are in"""
+    selected: Annotated[int | None, NumberBox(0, MOST_POINTS - 1, step=1, title="Selected point")] = None
+    """Click a point, or type its number; −1 for none"""
+    process: Annotated[
+        Literal["none", "ground", "clusters", "outliers", "register", "surface"],
+        Choice(
+            title="Process",
+            labels={
+                "none": "None",
+                "ground": "Ground plane (RANSAC)",
+                "clusters": "Euclidean clusters",
+                "outliers": "Remove outliers",
+                "register": "Register two scans (ICP)",
+                "surface": "Surface (alpha shape)",
+            },
+        ),
+    ] = "none"
+    """What to do with the points that are left after downsampling"""
+    step: Annotated[int, Slider(0, MOST_STEPS, step=1, title="Step")] = 2
+    """How far the process has come: 0 before, 1 found, 2 done, as at first; of a registration, steps of ICP, first 0"""
+    method: Annotated[
+        Literal["plane", "point"],
+        Choice(
+            title="ICP pairs",
+            labels={"plane": "Point to plane", "point": "Point to point"},
+            group="Settings of the process",
+        ),
+    ] = "plane"
+    """What each point of the second scan is drawn to"""
+    distance: Annotated[
+        float,
+        Slider(0.0, LONGEST, step=0.01, unit="m", title="Distance of the process", group="Settings of the process"),
+    ] = 0.0
+    """At 0 it follows from how dense the cloud is. At most 2 m, but for a file"""
+    deviations: Annotated[
+        float, Slider(0.5, 4.0, step=0.1, title="Deviations of an outlier", group="Settings of the process")
+    ] = 2.0
+    """Outliers are this many standard deviations farther from their neighbours than is usual"""
 
-    file: str | None = text(
-        title="File", description="A cloud of your own, or one of this server's folder", control="choice", group=OWN,
-        pattern=library.NAME, allowed="the name of a file, without a path",
-    )  # fmt: skip
-    units: Literal["auto", "metres", "millimetres", "feet", "us-feet", "degrees"] = choice(
-        "auto", title="Unit of the file", group=OWN,
-        description="What the file's coordinates are in. Guessed from its coordinate system, names and size",
-        labels={
-            "auto": "As guessed",
-            "metres": "Metres",
-            "millimetres": "Millimetres",
-            "feet": "Feet",
-            "us-feet": "US survey feet",
-            "degrees": "Degrees (longitude, latitude)",
-        },
-    )  # fmt: skip
-    columns: str = letters(
-        "", fewest=0, most=MOST_COLUMNS, title="Columns", entry="Column {}", group=OWN,
-        description="What each column of the file is taken for; of one for which nothing is chosen, it is guessed",
-        labels={letters_of([role]): words for role, words in ROLES.items()},
-    )  # fmt: skip
+    file: Annotated[
+        str | None, Text(title="File", pattern=library.NAME, format="the name of a file, without a path", group=OWN)
+    ] = None
+    """A cloud of your own, or one of this server's folder"""
+    units: Annotated[
+        Literal["auto", "metres", "millimetres", "feet", "us-feet", "degrees"],
+        Choice(
+            title="Unit of the file",
+            labels={
+                "auto": "As guessed",
+                "metres": "Metres",
+                "millimetres": "Millimetres",
+                "feet": "Feet",
+                "us-feet": "US survey feet",
+                "degrees": "Degrees (longitude, latitude)",
+            },
+            group=OWN,
+        ),
+    ] = "auto"
+    """What the file's coordinates are in. Guessed from its coordinate system, names and size"""
+    columns: Annotated[
+        str,
+        Letters(
+            title="Columns",
+            labels={letters_of([role]): words for role, words in ROLES.items()},
+            entry="Column {}",
+            most=MOST_COLUMNS,
+            fewest=0,
+            group=OWN,
+        ),
+    ] = ""
+    """What each column of the file is taken for; of one for which nothing is chosen, it is guessed"""
 
     def options(self, name: str) -> Mapping[Any, str]:
         return library.offered(self.file) if name == "file" else super().options(name)

@@ -10,8 +10,9 @@ import numpy as np
 
 from geometry import quaternion
 from geometry.arrays import Array
-from sims.kit.params import LONGEST_VALUE, spell
+from sims.kit.params import LONGEST_VALUE
 from sims.kit.sim import Step
+from sims.kit.spelling import spell
 from sims.quaternion.params import MOST_TURNS, REACH, QuaternionParams, Triple
 
 DIGITS = 12

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Self
+from typing import Annotated, Self
 
 from pydantic import model_validator
 
-from sims.kit.params import Params, choice, number, numbers, refusal, spell, switch, vector
+from sims.kit.fields import Choice, Numbers, Slider, Switch, Vector
+from sims.kit.params import Params
+from sims.kit.refusals import refusal
+from sims.kit.spelling import spell
 from sims.quaternion.paths import Name
 
 Triple = tuple[float, float, float]
@@ -32,52 +35,41 @@ PRESETS: dict[str, Triple] = {
 class QuaternionParams(Params):
     """State of the sim."""
 
-    axis: Triple = vector(
-        (0.0, 0.0, 1.0), -LONGEST, LONGEST, step=0.01, title="Axis n", presets=PRESETS,
-        description="Any direction; what you give is put at length one. You can also drag the arrow's tip",
-    )  # fmt: skip
-    angle: float = number(
-        90, 0, 360, step=1, unit="°", title="Angle", symbol="θ", description="Of the turn about the axis"
-    )
-    start: Quaternion = vector(
-        ONE, -1.0, 1.0, step=0.01, title="Start", control="none",
-        description="Orientation before the turn, as a quaternion w, x, y, z of any length but zero",
-    )  # fmt: skip
-    t: float = number(
-        1,
-        0,
-        1,
-        step=0.01,
-        title="Progress",
-        symbol="t",
-        description="Where the object is, from start (0) to target (1)",
-    )
-    interpolation: Name = choice(
-        "slerp", title="Interpolation", description="How the object goes from start to target",
-        labels={"slerp": "SLERP: constant speed", "nlerp": "NLERP: straight, put at length one",
-                "euler": "Euler angles, each on its own"},
-    )  # fmt: skip
-    long_way: bool = switch(
-        False, title="Take the long way (−q)",
-        description="Go to −q instead of q: the same target by the other way round. Not for Euler angles",
-    )  # fmt: skip
-    show_euler: bool = switch(
-        False, title="Euler angles", description="Show the yaw, pitch and roll that make the same orientation"
-    )
-    point: Triple = vector(
-        (1.0, 0.0, 0.0), -REACH, REACH, step=0.01, unit="m", title="Point p",
-        description="A point that q turns: q p q* gives its image p′. You can also drag it",
-    )  # fmt: skip
-    show_paths: bool = switch(
-        True, title="Paths of the nose", group="Show",
-        description="Where the nose goes on the unit sphere, with marks at equal times",
-    )  # fmt: skip
-    show_point: bool = switch(True, title="Point and image", group="Show", description="Show p, p′ and the arc between")
-    history: tuple[float, ...] = numbers(
-        (), -360.0, 360.0, least=0,
-        most=4 * MOST_TURNS, step=0.01, title="Turns made", control="none",
-        description="The turns that led to the start, the first one first: x, y, z of the axis and the angle of each",
-    )  # fmt: skip
+    axis: Annotated[Triple, Vector(-LONGEST, LONGEST, step=0.01, title="Axis n", presets=PRESETS)] = (0.0, 0.0, 1.0)
+    """Any direction; what you give is put at length one. You can also drag the arrow's tip"""
+    angle: Annotated[float, Slider(0, 360, step=1, unit="°", symbol="θ", title="Angle")] = 90
+    """Of the turn about the axis"""
+    start: Annotated[Quaternion, Vector(-1.0, 1.0, step=0.01, title="Start", hidden=True)] = ONE
+    """Orientation before the turn, as a quaternion w, x, y, z of any length but zero"""
+    t: Annotated[float, Slider(0, 1, step=0.01, symbol="t", title="Progress")] = 1
+    """Where the object is, from start (0) to target (1)"""
+    interpolation: Annotated[
+        Name,
+        Choice(
+            title="Interpolation",
+            labels={
+                "slerp": "SLERP: constant speed",
+                "nlerp": "NLERP: straight, put at length one",
+                "euler": "Euler angles, each on its own",
+            },
+        ),
+    ] = "slerp"
+    """How the object goes from start to target"""
+    long_way: Annotated[bool, Switch(title="Take the long way (−q)")] = False
+    """Go to −q instead of q: the same target by the other way round. Not for Euler angles"""
+    show_euler: Annotated[bool, Switch(title="Euler angles")] = False
+    """Show the yaw, pitch and roll that make the same orientation"""
+    point: Annotated[Triple, Vector(-REACH, REACH, step=0.01, unit="m", title="Point p")] = (1.0, 0.0, 0.0)
+    """A point that q turns: q p q* gives its image p′. You can also drag it"""
+    show_paths: Annotated[bool, Switch(title="Paths of the nose", group="Show")] = True
+    """Where the nose goes on the unit sphere, with marks at equal times"""
+    show_point: Annotated[bool, Switch(title="Point and image", group="Show")] = True
+    """Show p, p′ and the arc between"""
+    history: Annotated[
+        tuple[float, ...],
+        Numbers(-360.0, 360.0, step=0.01, title="Turns made", most=4 * MOST_TURNS, least=0, hidden=True),
+    ] = ()
+    """The turns that led to the start, the first one first: x, y, z of the axis and the angle of each"""
 
     @model_validator(mode="after")
     def _turns(self) -> Self:

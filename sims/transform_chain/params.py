@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
 
-from sims.kit.params import Params, choice, letters, numbers, optional, refusal, vector
+from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Vector
+from sims.kit.params import Params
+from sims.kit.refusals import refusal
 
 Place = tuple[float, float, float]
 MOST = 8
@@ -18,44 +20,49 @@ FAR, FARTHEST = (-20.0, -20.0, -20.0), (20.0, 20.0, 20.0)
 class ChainParams(Params):
     """State of the sim."""
 
-    angles: tuple[float, ...] = numbers(
-        (30.0, 40.0, -30.0), -180, 180, most=MOST, step=0.5, unit="°", title="Joint angles", entry="Joint {} angle",
-        description="How far each joint turns about its axis, counter-clockwise as seen from the axis's tip",
-    )  # fmt: skip
-    lengths: tuple[float, ...] = numbers(
-        (1.0, 0.8, 0.5), 0, 2, most=MOST, step=0.01, unit="m", title="Link lengths", entry="Link {} length",
-        group="Link lengths", description="How far each link leads along the x axis of its frame; 0 is a turn alone",
-    )  # fmt: skip
-    axes: str = letters(
-        "zyy", most=MOST, labels={"x": "x: twist", "y": "y: up and down", "z": "z: sideways"}, title="Joint axes",
-        entry="Joint {} axis", group="Joint axes",
-        description="The axis of the frame before a joint that the joint turns about",
-    )  # fmt: skip
-    show: Literal["individual", "composed"] = choice(
-        "individual", title="Transforms",
-        description="Arrows and matrices: from each frame to the next, or from the world to each frame",
-        labels={"individual": "Individual: frame to frame", "composed": "Composed: from the world"},
-    )  # fmt: skip
-    swap: int | None = optional(
-        1, MOST - 1, title="Swap transforms", words="{0} ↔ {1}",
-        description="Compare with the arm whose two neighbouring transforms are multiplied in the other order",
-    )  # fmt: skip
-    trace: int | None = optional(
-        1, MOST, title="Trace of joint", words="Joint {0}",
-        description="The circle that the end effector describes as this joint turns; follows the joint that you move",
-    )  # fmt: skip
-    point: Place = vector(
-        (0.1, 0.2, 0.0), -1, 1, step=0.01, unit="m", title="Point p", group="A point on the end effector",
-        description="Coordinates in the end effector's frame of the point that is taken through the chain",
-    )  # fmt: skip
-    target: Place | None = vector(
-        None, FAR, FARTHEST, step=0.01, unit="m", control="none", title="Target",
-        description="A place to reach with the end effector; absent is none",
-    )  # fmt: skip
-    pull: Place | None = vector(
-        None, FAR, FARTHEST, step=0.01, unit="m", control="none", title="Pull",
-        description="Where the end effector was last dragged to, if the arm doesn't get there; absent otherwise",
-    )  # fmt: skip
+    angles: Annotated[
+        tuple[float, ...],
+        Numbers(-180, 180, step=0.5, unit="°", title="Joint angles", entry="Joint {} angle", most=MOST),
+    ] = (30.0, 40.0, -30.0)
+    """How far each joint turns about its axis, counter-clockwise as seen from the axis's tip"""
+    lengths: Annotated[
+        tuple[float, ...],
+        Numbers(
+            0, 2, step=0.01, unit="m", title="Link lengths", entry="Link {} length", most=MOST, group="Link lengths"
+        ),
+    ] = (1.0, 0.8, 0.5)
+    """How far each link leads along the x axis of its frame; 0 is a turn alone"""
+    axes: Annotated[
+        str,
+        Letters(
+            title="Joint axes",
+            labels={"x": "x: twist", "y": "y: up and down", "z": "z: sideways"},
+            entry="Joint {} axis",
+            most=MOST,
+            group="Joint axes",
+        ),
+    ] = "zyy"
+    """The axis of the frame before a joint that the joint turns about"""
+    show: Annotated[
+        Literal["individual", "composed"],
+        Choice(
+            title="Transforms",
+            labels={"individual": "Individual: frame to frame", "composed": "Composed: from the world"},
+        ),
+    ] = "individual"
+    """Arrows and matrices: from each frame to the next, or from the world to each frame"""
+    swap: Annotated[int | None, OptionalNumber(1, MOST - 1, title="Swap transforms", words="{0} ↔ {1}")] = None
+    """Compare with the arm whose two neighbouring transforms are multiplied in the other order"""
+    trace: Annotated[int | None, OptionalNumber(1, MOST, title="Trace of joint", words="Joint {0}")] = None
+    """The circle that the end effector describes as this joint turns; follows the joint that you move"""
+    point: Annotated[
+        Place, Vector(-1, 1, step=0.01, unit="m", title="Point p", group="A point on the end effector")
+    ] = (0.1, 0.2, 0.0)
+    """Coordinates in the end effector's frame of the point that is taken through the chain"""
+    target: Annotated[Place | None, Vector(FAR, FARTHEST, step=0.01, unit="m", title="Target", hidden=True)] = None
+    """A place to reach with the end effector; absent is none"""
+    pull: Annotated[Place | None, Vector(FAR, FARTHEST, step=0.01, unit="m", title="Pull", hidden=True)] = None
+    """Where the end effector was last dragged to, if the arm doesn't get there; absent otherwise"""
 
     @property
     def count(self) -> int:

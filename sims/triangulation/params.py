@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
+from sims.kit.fields import Choice, NumberBox, Slider, Switch, Vector
 from sims.kit.frame import HEIGHT, WIDTH
-from sims.kit.params import Params, choice, number, switch, vector
+from sims.kit.params import Params
 
 Method = Literal["dlt", "midpoint", "optimal"]
 Pixel = tuple[float, float]
@@ -19,32 +20,24 @@ LAST_SEED = 9999
 class TriangulationParams(Params):
     """State of the sim."""
 
-    baseline: float = number(
-        0.6, 0.05, 2, step=0.01, unit="m", title="Baseline", symbol="b", description="Distance between the cameras"
-    )
-    focal: float = number(
-        600, 200, 1500, step=10, unit="px", title="Focal length", symbol="f", description="Of both cameras"
-    )
-    left_uv: Pixel = vector(
-        (410.0, 210.0), (0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v",
-        description="Where the point is in the left picture, before noise",
-    )  # fmt: skip
-    right_uv: Pixel = vector(
-        (320.0, 210.0), (0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v",
-        description="Where the point is in the right picture, before noise",
-    )  # fmt: skip
-    noise: float = number(
-        0, 0, 5, step=0.05, unit="px", title="Noise", symbol="σ",
-        description="Standard deviation of Gaussian noise on both points; 0 is off",
-    )  # fmt: skip
-    seed: int = number(
-        0, 0, LAST_SEED, step=1, title="Sample", description="Seed of the noise: the same seed, the same noise",
-        control="number",
-    )  # fmt: skip
-    method: Method = choice(
-        "dlt", title="Method", description="Which reconstruction is the result",
-        labels={"dlt": "DLT (linear)", "midpoint": "Mid-point", "optimal": "Optimal (least error)"},
-    )  # fmt: skip
-    show_ellipsoid: bool = switch(
-        True, title="Show ellipsoid", description="The uncertainty of the result, three standard deviations wide"
-    )
+    baseline: Annotated[float, Slider(0.05, 2, step=0.01, unit="m", symbol="b", title="Baseline")] = 0.6
+    """Distance between the cameras"""
+    focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
+    """Of both cameras"""
+    left_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v")] = (410.0, 210.0)
+    """Where the point is in the left picture, before noise"""
+    right_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v")] = (320.0, 210.0)
+    """Where the point is in the right picture, before noise"""
+    noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise")] = 0
+    """Standard deviation of Gaussian noise on both points; 0 is off"""
+    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample")] = 0
+    """Seed of the noise: the same seed, the same noise"""
+    method: Annotated[
+        Method,
+        Choice(
+            title="Method", labels={"dlt": "DLT (linear)", "midpoint": "Mid-point", "optimal": "Optimal (least error)"}
+        ),
+    ] = "dlt"
+    """Which reconstruction is the result"""
+    show_ellipsoid: Annotated[bool, Switch(title="Show ellipsoid")] = True
+    """The uncertainty of the result, three standard deviations wide"""

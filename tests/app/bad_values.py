@@ -5,46 +5,45 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from pydantic.fields import FieldInfo
-
 from sims import SIMS
-from sims.kit.params import choices, extra, field_bounds, plain
+from sims.kit.fields import Choice, Kind, Letters, Numbers, Numeric, Switch, Vector
 from sims.kit.sim import Sim
+from sims.kit.spelling import plain
 
 AnySim = Sim[Any, Any]
 HOSTILE = '<script>alert("1")</script>\'&'
 NAN, INFINITE = float("nan"), float("inf")
 
 
-def may_be_empty(field: FieldInfo) -> bool:
-    """Whether it is a list that need not have an entry."""
-    return extra(field).get("least") == 0
+def may_be_empty(kind: Kind) -> bool:
+    """Whether it is a list, of numbers or letters, that need not have an entry."""
+    return (isinstance(kind, Numbers) and not kind.least) or (isinstance(kind, Letters) and not kind.fewest)
 
 
-def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
+def for_json(kind: Kind, default: Any) -> Iterator[tuple[str, Any]]:
     """What is wrong, and the value."""
     yield "an object", {"a": 1}
     yield "markup", HOSTILE
     yield "too long", "1" * 5000
-    if field.default is not None:
+    if default is not None:
         yield "null", None
-    if choices(field):
+    if isinstance(kind, Choice):
         yield "a number", 1
-        yield "capitals", choices(field)[0].upper()
+        yield "capitals", kind.words[0].upper()
         yield "empty", ""
-    elif extra(field).get("control") == "switch":
+    elif isinstance(kind, Switch):
         yield "a word", "perhaps"
         yield "a number", 2
-    elif may_be_empty(field):
-        low, high = field_bounds(field)
+    elif isinstance(kind, Numbers) and not kind.least:
+        low, high = kind.bounds
         yield "a number", 1
-        yield "too many", [high] * (extra(field)["most"] + 1)
+        yield "too many", [high] * (kind.most + 1)
         yield "below", [low - 1]
         yield "not a number", [NAN]
         yield "words", ["a"]
-    elif isinstance(field.default, tuple):
-        low, high = field_bounds(field)
-        good = list(field.default)
+    elif isinstance(kind, Numbers | Vector) and default is not None:
+        low, high = kind.bounds
+        good = list(default)
         yield "a number", 1
         yield "one entry less", good[:-1]
         yield "one entry more", [*good, good[0]]
@@ -53,8 +52,8 @@ def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
         yield "not a number", [NAN, *good[1:]]
         yield "infinite", [INFINITE, *good[1:]]
         yield "words", ["a" for _ in good]
-    elif extra(field).get("step") is not None:
-        low, high = field_bounds(field)
+    elif isinstance(kind, Numeric):
+        low, high = kind.bounds
         yield "a word", "many"
         yield "a list", [1]
         yield "below", low - 1
@@ -65,32 +64,32 @@ def for_json(field: FieldInfo) -> Iterator[tuple[str, Any]]:
         yield "very large", 10**400
 
 
-def for_link(field: FieldInfo) -> Iterator[tuple[str, str]]:
+def for_link(kind: Kind, default: Any) -> Iterator[tuple[str, str]]:
     """What is wrong, and how it is spelled."""
-    if not may_be_empty(field) and extra(field).get("fewest") != 0:
+    if not may_be_empty(kind):
         yield "empty", ""
     yield "markup", HOSTILE
     yield "too long", "1" * 401
     yield "control characters", "1\x00\n2"
-    if choices(field):
+    if isinstance(kind, Choice):
         yield "an unknown word", "sideways"
-    elif extra(field).get("control") == "switch":
+    elif isinstance(kind, Switch):
         yield "a word", "yes"
-    elif may_be_empty(field):
-        low, high = field_bounds(field)
-        yield "too many", ",".join([plain(high)] * (extra(field)["most"] + 1))
+    elif isinstance(kind, Numbers) and not kind.least:
+        low, high = kind.bounds
+        yield "too many", ",".join([plain(high)] * (kind.most + 1))
         yield "above", plain(high + 1)
         yield "infinite", "inf"
-    elif isinstance(field.default, tuple):
-        low, high = field_bounds(field)
-        rest = ["0"] * (len(field.default) - 1)
+    elif isinstance(kind, Numbers | Vector) and default is not None:
+        low, high = kind.bounds
+        rest = ["0"] * (len(default) - 1)
         yield "too few", ",".join(rest)
         yield "below", ",".join([str(low - 1), *rest])
         yield "above", ",".join([str(high + 1), *rest])
         yield "not a number", ",".join(["nan", *rest])
         yield "infinite", ",".join(["inf", *rest])
-    elif extra(field).get("step") is not None:
-        low, high = field_bounds(field)
+    elif isinstance(kind, Numeric):
+        low, high = kind.bounds
         yield "a word", "many"
         yield "below", str(low - 1)
         yield "above", str(high + 1)
@@ -99,8 +98,12 @@ def for_link(field: FieldInfo) -> Iterator[tuple[str, str]]:
         yield "very large", "1e999"
 
 
-FIELDS = [(sim, name, field) for sim in SIMS for name, field in sim.params.model_fields.items()]
-JSON = [(sim, name, value) for sim, name, field in FIELDS for _, value in for_json(field)]
-JSON_NAMES = [f"{sim.slug}: {name} {why}" for sim, name, field in FIELDS for why, _ in for_json(field)]
-LINK = [(sim, name, text) for sim, name, field in FIELDS for _, text in for_link(field)]
-LINK_NAMES = [f"{sim.slug}: {name} {why}" for sim, name, field in FIELDS for why, _ in for_link(field)]
+FIELDS = [
+    (sim, name, sim.params.kinds[name], field.default)
+    for sim in SIMS
+    for name, field in sim.params.model_fields.items()
+]
+JSON = [(sim, name, value) for sim, name, kind, default in FIELDS for _, value in for_json(kind, default)]
+JSON_NAMES = [f"{sim.slug}: {name} {why}" for sim, name, kind, default in FIELDS for why, _ in for_json(kind, default)]
+LINK = [(sim, name, text) for sim, name, kind, default in FIELDS for _, text in for_link(kind, default)]
+LINK_NAMES = [f"{sim.slug}: {name} {why}" for sim, name, kind, default in FIELDS for why, _ in for_link(kind, default)]

@@ -12,9 +12,11 @@ import pytest
 
 from app import api
 from sims import SIMS
-from sims.kit.params import BadParams, Params, clipped, extra, numeric_fields
+from sims.kit.fields import Switch
+from sims.kit.refusals import BadParams
 from sims.kit.schema import solution_schema
 from sims.kit.sim import Sim, jsonable
+from sims.kit.spelling import clipped
 from tests.app.bad_values import HOSTILE, JSON, JSON_NAMES, LINK, LINK_NAMES
 from tests.app.conftest import Local
 from tests.schema import wrong
@@ -205,8 +207,7 @@ def post(http: httpx.Client, sim: AnySim, body: str | bytes, **headers: str) -> 
 def numbers() -> Iterator[tuple[AnySim, str, Any]]:
     """Each number of each sim, and a value that it may have."""
     for sim in SIMS:
-        model: type[Params] = sim.params
-        for name in numeric_fields(model):
+        for name in sim.params.numeric:
             field = sim.params.model_fields[name]
             low, _ = sim.params().bounds(name)
             yield sim, name, list(field.default) if isinstance(field.default, tuple) else low
@@ -227,8 +228,8 @@ def test_a_number_is_neither_text_nor_true_or_false(http: httpx.Client, sim: Any
 
 @each_sim
 def test_switches_are_true_or_false(http: httpx.Client, sim: AnySim) -> None:
-    for name, field in sim.params.model_fields.items():
-        if extra(field)["control"] == "switch":
+    for name, kind in sim.params.kinds.items():
+        if isinstance(kind, Switch):
             for value in (1, 0, "true", "1", None):
                 (detail,) = complaints(http.post(f"/api/sims/{sim.slug}/solve", json={name: value}))
                 assert (detail["parameter"], detail["allowed"]) == (name, "true or false")

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
@@ -23,7 +23,8 @@ from app.commands import Commands
 from app.session import Full, Session, Sessions, new_key, room_of
 from app.workers import workers
 from sims import by_slug
-from sims.kit.params import Params, number, optional, vector
+from sims.kit.fields import NumberBox, OptionalNumber, Slider, Vector
+from sims.kit.params import Params
 from sims.kit.progress import Superseded, begins, goes_on
 from sims.kit.sim import Action, Sim, Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
@@ -531,10 +532,10 @@ def test_whole_numbers_with_a_slider_go_in_steps_and_names_jump() -> None:
 
 
 class ToyNumbers(Params):
-    amount: int = number(0, 0, 10, title="Amount", description="", step=1)
-    name: int = number(0, 0, 10, title="Name", description="", step=1, control="number")
-    maybe: int | None = optional(1, 9, title="Maybe", description="", words="{0}")
-    vector: tuple[float, float] = vector((0.0, 0.0), -1, 1, title="Vector", description="", step=0.1)
+    amount: Annotated[int, Slider(0, 10, step=1, title="Amount")] = 0
+    name: Annotated[int, NumberBox(0, 10, step=1, title="Name")] = 0
+    maybe: Annotated[int | None, OptionalNumber(1, 9, title="Maybe", words="{0}")] = None
+    vector: Annotated[tuple[float, float], Vector(-1, 1, step=0.1, title="Vector")] = (0.0, 0.0)
 
 
 # ---- what can't be foreseen

@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from geometry import GeometryError
-from sims.kit.params import Params, choice, number
+from sims.kit.fields import Choice, Slider
+from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import Action, Sim, Step, View
 
@@ -19,10 +20,10 @@ IMPOSSIBLE = 13.0
 class ToyParams(Params):
     """A size, a colour, and how slow the solving is."""
 
-    size: float = number(1, 0, 100, title="Size", description="How large", step=1)
-    kind: Literal["red", "blue"] = choice(
-        "red", title="Kind", description="Which", labels={"red": "Red", "blue": "Blue"}
-    )
+    size: Annotated[float, Slider(0, 100, step=1, title="Size")] = 1
+    """How large"""
+    kind: Annotated[Literal["red", "blue"], Choice(title="Kind", labels={"red": "Red", "blue": "Blue"})] = "red"
+    """Which"""
 
 
 @dataclass(frozen=True)

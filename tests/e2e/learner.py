@@ -27,9 +27,9 @@ from playwright.sync_api import (
 )  # fmt: skip
 
 from sims import by_slug
-from sims.kit.params import Params, options
+from sims.kit.controls import worded
+from sims.kit.params import Params
 from sims.kit.readout import figure
-from sims.kit.viewer import worded
 from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
 
 T = TypeVar("T")
@@ -304,7 +304,7 @@ class Learner:
         """Open a dropdown and choose what is shown for a word, or for its absence."""
         sim = by_slug(self.slug)
         assert sim is not None
-        shown = options(sim.params.model_fields[name])[word]
+        shown = sim.params().options(name)[word]
         self.control("combobox", name).click()
         self.frame.get_by_role("option", name=shown, exact=True).click()
 

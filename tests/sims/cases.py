@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from sims import SIMS
-from sims.kit.params import Params, choices, entry_bounds, extra, numeric_fields
+from sims.kit.fields import Choice, Switch, Vector
+from sims.kit.params import Params
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
@@ -23,7 +24,7 @@ def few(sim: AnySim) -> Iterator[tuple[str, Params]]:
 def bounds(sim: AnySim) -> Iterator[tuple[str, Params]]:
     """Each number at both its bounds; and for each choice, all numbers at their least and at their greatest."""
     start: Params = sim.params()
-    numbers = numeric_fields(type(start))
+    numbers = start.numeric
     for end in (0, 1):
         for name in numbers:
             yield f"{ENDS[end]} {name}", start.moved({name: _at_end(start, name, end)})
@@ -36,18 +37,16 @@ ENDS = ("least", "greatest")
 
 
 def _at_end(params: Params, name: str, end: int) -> Any:
-    value, bound = getattr(params, name), params.bounds(name)[end]
-    if value is None and "low" in extra(field := type(params).model_fields[name]):
-        return entry_bounds(field)[end]
+    value, bound, kind = getattr(params, name), params.bounds(name)[end], params.kinds[name]
+    if value is None and isinstance(kind, Vector):
+        return tuple(bounds[end] for bounds in kind.each)
     return tuple(bound for _ in value) if isinstance(value, tuple) else bound
 
 
 def _choices(start: Params) -> Iterator[Params]:
     """Each other word of each choice and each switch turned, one at a time."""
-    for name, field in type(start).model_fields.items():
-        words: tuple[Any, ...] = choices(field)
-        if extra(field).get("control") == "switch":
-            words = (True, False)
+    for name, kind in start.kinds.items():
+        words = kind.words if isinstance(kind, Choice) else (True, False) if isinstance(kind, Switch) else ()
         yield from (start.moved({name: word}) for word in words if word != getattr(start, name))
 
 

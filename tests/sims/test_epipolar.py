@@ -21,8 +21,8 @@ from sims.epipolar.panes import panes
 from sims.epipolar.params import OTHERS
 from sims.kit import readout
 from sims.kit.frame import INSET
-from sims.kit.params import BadParams
 from sims.kit.readout import figure
+from sims.kit.refusals import BadParams
 from sims.kit.sim import jsonable
 from tests.frames import differences
 from tests.server import Rig

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 from urllib.parse import parse_qsl
 
 import pytest
@@ -11,25 +11,27 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
-from sims.kit import params as kit
-from sims.kit.params import BadParams, Params, choice, number, plain, spell, switch, text, vector
+from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Slider, Switch, Text, Vector
+from sims.kit.params import Params
+from sims.kit.refusals import BadParams
+from sims.kit.spelling import clipped, plain, spell
 
 
 class Toy(Params):
     """One field of each kind; the bounds of `turn` depend on `half`, and `size` was once called `scale`."""
 
-    turn: float = number(10, -180, 180, title="Turn", symbol="τ", description="An angle", step=1, unit="°")
-    count: int = number(3, 1, 12, title="Count", description="A whole number", step=1)
-    kind: Literal["one", "two"] = choice(
-        "one", title="Kind", description="A word", labels={"one": "The one", "two": "The two"}
-    )
-    half: bool = switch(False, title="Half", description="A switch")
-    place: tuple[float, float, float] = vector(
-        (0.0, 1.0, 0.5), -5, 5, title="Place", description="Three numbers", step=0.1, unit="m"
-    )
-    size: float = Field(
-        1.0, ge=0, le=2, alias="scale", title="Size", description="Renamed", json_schema_extra={"step": 0.1}
-    )
+    turn: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="τ", title="Turn")] = 10
+    """An angle"""
+    count: Annotated[int, Slider(1, 12, step=1, title="Count")] = 3
+    """A whole number"""
+    kind: Annotated[Literal["one", "two"], Choice(title="Kind", labels={"one": "The one", "two": "The two"})] = "one"
+    """A word"""
+    half: Annotated[bool, Switch(title="Half")] = False
+    """A switch"""
+    place: Annotated[tuple[float, float, float], Vector(-5, 5, step=0.1, unit="m", title="Place")] = (0.0, 1.0, 0.5)
+    """Three numbers"""
+    size: Annotated[float, Slider(0, 2, step=0.1, title="Size")] = Field(1.0, alias="scale")
+    """Renamed"""
 
     def bounds(self, name: str) -> tuple[float, float]:
         return (-90.0, 90.0) if name == "turn" and self.half else super().bounds(name)
@@ -255,12 +257,12 @@ def test_labels_and_units() -> None:
 
 
 def test_numeric_fields_are_those_with_bounds() -> None:
-    assert kit.numeric_fields(Toy) == ("turn", "count", "place", "size")
+    assert tuple(Toy.numeric) == ("turn", "count", "place", "size")
 
 
 def test_long_text_is_cut_where_it_is_shown() -> None:
-    assert kit.clipped("x" * 80) == "x" * 80
-    assert kit.clipped("x" * 81) == "x" * 79 + "…"
+    assert clipped("x" * 80) == "x" * 80
+    assert clipped("x" * 81) == "x" * 79 + "…"
 
 
 # ---- vectors whose entries have bounds of their own
@@ -269,9 +271,8 @@ def test_long_text_is_cut_where_it_is_shown() -> None:
 class Pixel(Params):
     """A place in a picture."""
 
-    uv: tuple[float, float] = vector(
-        (320.0, 240.0), (0.0, 0.0), (639.0, 479.0), title="Pixel", description="Column and row", step=1
-    )
+    uv: Annotated[tuple[float, float], Vector((0.0, 0.0), (639.0, 479.0), step=1, title="Pixel")] = (320.0, 240.0)
+    """Column and row"""
 
 
 def test_entries_of_a_vector_are_kept_within_their_own_bounds() -> None:
@@ -296,16 +297,17 @@ def test_entries_of_a_vector_say_what_they_allow() -> None:
 class Glove(Params):
     """Which hand, if that matters."""
 
-    hand: Literal["right", "left"] | None = choice(
-        None, title="Hand", description="Which", labels={"right": "Right", "left": "Left"}, absent="Either"
-    )
+    hand: Annotated[
+        Literal["right", "left"] | None,
+        Choice(title="Hand", labels={"right": "Right", "left": "Left"}, absent="Either"),
+    ] = None
+    """Which"""
 
 
 def test_absent_choice_is_an_option_and_left_out_of_the_link() -> None:
-    field = Glove.model_fields["hand"]
-    assert kit.choices(field) == ("right", "left")
-    assert kit.options(field) == {None: "Either", "right": "Right", "left": "Left"}
-    assert kit.options(Toy.model_fields["kind"]) == {"one": "The one", "two": "The two"}
+    assert Glove.kinds["hand"].allowed == "one of: right, left"
+    assert Glove().options("hand") == {None: "Either", "right": "Right", "left": "Left"}
+    assert Toy().options("kind") == {"one": "The one", "two": "The two"}
     assert Glove().query() == ""
     assert Glove(hand="left").query() == "hand=left"
     assert Glove(hand="left").moved({"hand": None}) == Glove()
@@ -324,16 +326,17 @@ def test_absence_of_a_choice_has_no_word(text: str) -> None:
 class Row(Params):
     """A list of numbers with a letter for each, and which of them is meant."""
 
-    sizes: tuple[float, ...] = kit.numbers(
-        (1.0, 2.0), 0, 5, most=3, title="Sizes", entry="Size {}", description="How large each is", step=0.1, unit="m"
+    sizes: Annotated[tuple[float, ...], Numbers(0, 5, step=0.1, unit="m", title="Sizes", entry="Size {}", most=3)] = (
+        1.0,
+        2.0,
     )
-    marks: str = kit.letters(
-        "ab", most=3, labels={"a": "An a", "b": "A b"}, title="Marks", entry="Mark {}", description="What each is"
-    )
-    chosen: int | None = kit.optional(1, 3, title="Chosen", description="Which is meant", words="{0} before {1}")
-    spot: tuple[float, float] | None = vector(
-        None, (-1.0, -2.0), (1.0, 2.0), title="Spot", description="A place, or none", step=0.1
-    )
+    """How large each is"""
+    marks: Annotated[str, Letters(title="Marks", labels={"a": "An a", "b": "A b"}, entry="Mark {}", most=3)] = "ab"
+    """What each is"""
+    chosen: Annotated[int | None, OptionalNumber(1, 3, title="Chosen", words="{0} before {1}")] = None
+    """Which is meant"""
+    spot: Annotated[tuple[float, float] | None, Vector((-1.0, -2.0), (1.0, 2.0), step=0.1, title="Spot")] = None
+    """A place, or none"""
 
     def bounds(self, name: str) -> tuple[float, float]:
         return (1, len(self.sizes) - 1) if name == "chosen" else super().bounds(name)
@@ -391,9 +394,10 @@ def test_dropdown_of_a_number_that_may_be_absent_offers_what_there_is() -> None:
 class Route(Params):
     """Somewhere, or nowhere."""
 
-    to: str | None = text(
-        title="To", description="A place", pattern=r"^[a-z]{1,9}:[0-9]{1,4}$", allowed="street:number"
-    )
+    to: Annotated[
+        str | None, Text(title="To", pattern=r"^[a-z]{1,9}:[0-9]{1,4}$", format="street:number", hidden=True)
+    ] = None
+    """A place"""
 
 
 def test_text_is_kept_as_it_is_or_is_absent() -> None:
@@ -417,9 +421,8 @@ def test_text_in_another_format_is_refused_with_the_format_in_words(wrong: str) 
 class Turns(Params):
     """A list that may be empty."""
 
-    made: tuple[float, ...] = kit.numbers(
-        (), -180, 180, least=0, most=3, title="Made", description="Turns so far", step=1, control="none"
-    )
+    made: Annotated[tuple[float, ...], Numbers(-180, 180, step=1, title="Made", most=3, least=0, hidden=True)] = ()
+    """Turns so far"""
 
 
 @given(st.lists(st.floats(-180, 180), max_size=3))

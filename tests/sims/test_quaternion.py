@@ -17,9 +17,11 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation, Slerp
 
 from sims.kit import pane, readout
+from sims.kit.controls import OTHER
 from sims.kit.palette import LIGHT
-from sims.kit.params import LONGEST_VALUE, BadParams, spell
-from sims.kit.viewer import OTHER
+from sims.kit.params import LONGEST_VALUE
+from sims.kit.refusals import BadParams
+from sims.kit.spelling import spell
 from sims.quaternion import SIM, QuaternionParams, actions, solve
 from sims.quaternion.panes import panes, pixel
 from sims.quaternion.params import MOST_TURNS, PRESETS

@@ -15,8 +15,9 @@ from pydantic import ValidationError
 from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import pane, readout
+from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Switch, Text, Vector
 from sims.kit.palette import DARK, LIGHT
-from sims.kit.params import Params, choices, entry_bounds, extra, field_bounds, numeric_fields
+from sims.kit.params import Params
 from sims.kit.sim import Sim, jsonable
 from sims.kit.viewer import Look
 from tests.frames import differences
@@ -28,7 +29,7 @@ from tests.sims.markup import bad_attributes, bad_numbers, mistakes, words, xml
 AnySim = Sim[Any, Any]
 MOST_LABELS = 7
 MODELS: dict[str, type[Params]] = {sim.slug: sim.params for sim in SIMS}
-NUMERIC = {slug: numeric_fields(model) for slug, model in MODELS.items()}
+NUMERIC = {slug: model.numeric for slug, model in MODELS.items()}
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 each_state = pytest.mark.parametrize(("sim", "name", "params"), ALL, ids=NAMES)
 few_states = pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
@@ -81,28 +82,26 @@ def test_defaults_are_left_out_of_the_link(sim: AnySim) -> None:
 @each_sim
 def test_every_parameter_is_described_for_people(sim: AnySim) -> None:
     for name, field in sim.params.model_fields.items():
-        assert field.title, name
+        assert sim.params.kinds[name].title, name
         assert field.description, name
         assert field.description[0].isupper(), name
         assert not field.description.endswith("."), name
-        if extra(field).get("control") == "choice":
-            assert set(extra(field)["labels"]) == set(choices(field)), name
-            assert all(word == word.lower() for word in choices(field)), name
+        if isinstance(kind := sim.params.kinds[name], Choice):
+            assert all(word == word.lower() for word in kind.words), name
 
 
 @each_sim
 def test_schema_says_bounds_and_words(sim: AnySim) -> None:
     properties = sim.params.model_json_schema()["properties"]
     for name in NUMERIC[sim.slug]:
-        field = sim.params.model_fields[name]
-        low, high = field_bounds(field)
+        low, high = NUMERIC[sim.slug][name].bounds
         told = json.dumps(properties[name])
         assert f"{low}" in told, name
         assert f"{high}" in told, name
-    for name, field in sim.params.model_fields.items():
-        if words := choices(field):
+    for name, kind in sim.params.kinds.items():
+        if isinstance(kind, Choice):
             told = properties[name]
-            assert list(words) in [kind.get("enum") for kind in (told, *told.get("anyOf", ()))]
+            assert list(kind.words) in [kind.get("enum") for kind in (told, *told.get("anyOf", ()))]
 
 
 @each_sim
@@ -270,17 +269,19 @@ def field_cases() -> list[tuple[AnySim, str]]:
     return [
         (sim, name)
         for sim in SIMS
-        for name, field in sim.params.model_fields.items()
-        if extra(field).get("control", "none") not in ("none", *LISTS)
+        for name, kind in sim.params.kinds.items()
+        if not kind.hidden and not isinstance(kind, LISTS)
     ]
 
 
-LISTS = ("numbers", "letters")
+DROPDOWNS = (Choice, OptionalNumber, Text)
+LISTS = (Numbers, Letters)
 """Kinds of fields that have a control for each entry."""
 
 
 def entry_cases() -> list[tuple[AnySim, str]]:
-    return [(sim, n) for sim in SIMS for n, f in sim.params.model_fields.items() if extra(f).get("control") in LISTS]
+    kinds = [(sim, name, kind) for sim in SIMS for name, kind in sim.params.kinds.items()]
+    return [(sim, name) for sim, name, kind in kinds if isinstance(kind, LISTS) and not kind.hidden]
 
 
 def each(cases: list[tuple[AnySim, str]]) -> pytest.MarkDecorator:
@@ -293,7 +294,7 @@ each_number = each(
     [
         (sim, name)
         for sim, name in field_cases()
-        if name in NUMERIC[sim.slug] and extra(sim.params.model_fields[name])["control"] != "option"
+        if name in NUMERIC[sim.slug] and not isinstance(NUMERIC[sim.slug][name], OptionalNumber)
     ]
 )
 
@@ -301,10 +302,10 @@ each_number = each(
 def shown(params: Params, name: str) -> Any:
     """What the control of a parameter should show."""
     value = getattr(params, name)
-    if extra(type(params).model_fields[name])["control"] in ("choice", "option"):
+    if isinstance(params.kinds[name], DROPDOWNS):
         return params.options(name)[value]
     if value is None:
-        return params.bounds(name)[0] - extra(type(params).model_fields[name])["step"]
+        return params.bounds(name)[0] - params.numeric[name].step
     return list(value) if isinstance(value, tuple) else value
 
 
@@ -312,20 +313,19 @@ def shown(params: Params, name: str) -> Any:
 def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
     rig = rigs[sim.slug]
     rig.show(sim.params())
-    field = sim.params.model_fields[name]
+    kind = sim.params.kinds[name]
     start = getattr(rig.session.params, name)
     aims: list[Any]
-    if extra(field)["control"] in ("choice", "option"):
+    if isinstance(kind, DROPDOWNS):
         aims = [*(value for value in rig.session.params.options(name) if value != start), start]
-    elif extra(field)["control"] == "switch":
+    elif isinstance(kind, Switch):
         aims = [not start]
     else:
         low, high = rig.session.params.bounds(name)
-        step = extra(field)["step"]
+        step = NUMERIC[sim.slug][name].step
         aims = [low, high, high - step]
-        if isinstance(start, tuple):
-            ranges = zip(*entry_bounds(field), strict=True)
-            aims = list(zip(*((low, high, high - step) for low, high in ranges), strict=True))
+        if isinstance(kind, Vector):
+            aims = list(zip(*((low, high, high - step) for low, high in kind.each), strict=True))
     for aim in aims:
         wanted = shown(rig.session.params.model_copy(update={name: aim}), name)
         rig.browser.move(name, wanted)
@@ -342,12 +342,13 @@ def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim:
     start = getattr(rig.session.params, name)
     low, high = rig.session.params.bounds(name)
     for beyond, bound in ((low - 1000, low), (high + 1000, high), (high + 2000, high)):
-        many = isinstance(start, tuple)
+        kind = NUMERIC[sim.slug][name]
+        many = isinstance(kind, Vector)
         rig.browser.move(name, [beyond for _ in start] if many else beyond)
         rig.settle()
         wanted: Any = bound
-        if many:
-            least, greatest = entry_bounds(sim.params.model_fields[name])
+        if isinstance(kind, Vector):
+            least, greatest = zip(*kind.each, strict=True)
             wanted = list(least if beyond < low else greatest)
         assert shown(rig.session.params, name) == wanted
         assert rig.browser.control(name).value == pytest.approx(wanted)
@@ -368,11 +369,13 @@ def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnyS
 @each_list
 def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
     rig = rigs[sim.slug]
-    labels = extra(sim.params.model_fields[name]).get("labels")
+    kind = sim.params.kinds[name]
+    assert isinstance(kind, LISTS)
+    labels: Any = kind.labels if isinstance(kind, Letters) else None
     for params in [p for s, _, p in FEW if s is sim]:
         rig.show(params)
         model, start = rig.browser.model, params.entries(name)
-        for k in range(extra(sim.params.model_fields[name])["most"]):
+        for k in range(kind.most):
             control = model.control(params.entry_label(name, k))
             assert control.props.get("visible", True) == (k < len(start))
             if k < len(start):

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from geometry.kinematics import Chain
 from sims.kit import readout
-from sims.kit.params import BadParams
+from sims.kit.refusals import BadParams
 from sims.transform_chain import SIM, ChainParams, ChainSolution, actions, solve
 from sims.transform_chain.readouts import transform_name
 from tests.server import Rig
