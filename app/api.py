@@ -16,13 +16,14 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app import pages
 from app.answers import RETRY, Answers, Busy, Gone
 from app.pages import sim_or_404
+from app.session import Sessions
 from app.trouble import question
 from app.values import complaints, shown, strict
 from geometry import GeometryError
 from sims import SIMS
 from sims.kit.params import Params
 from sims.kit.schema import solution_schema
-from sims.kit.sim import Sim, jsonable
+from sims.kit.sim import Library, Sim, jsonable
 
 AnySim = Sim[Any, Any]
 ANYWHERE = {"access-control-allow-origin": "*"}
@@ -125,7 +126,7 @@ def _item(
     }  # fmt: skip
 
 
-def add_api(app: FastAPI) -> Answers:
+def add_api(app: FastAPI, sessions: Sessions) -> Answers:
     """The addresses of the API; what works out its long answers."""
     answers = Answers()
 
@@ -143,7 +144,7 @@ def add_api(app: FastAPI) -> Answers:
         return {**pages.details(sim), "solution": solution_schema(solved(sim))}
 
     for sim in SIMS:
-        _add_solve(app, answers, sim)
+        _add_solve(app, answers, sim, sessions.given(sim))
 
     @app.post("/api/sims/{slug}/solve", include_in_schema=False)
     async def unknown(slug: str) -> None:
@@ -175,9 +176,9 @@ def solved(sim: AnySim) -> type:
     return kind
 
 
-def _add_solve(app: FastAPI, answers: Answers, sim: AnySim) -> None:
+def _add_solve(app: FastAPI, answers: Answers, sim: AnySim, given: tuple[Library, ...]) -> None:
     def answer(params: Params) -> bytes:
-        solution = jsonable(sim.solve(params))
+        solution = jsonable(sim.solve(params, *given))
         return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
 
     async def solve(request: Request) -> Response:

@@ -232,7 +232,7 @@ class Bridge:
             session = self.sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
             look = Look(hello.dark, hello.controls, visit.watching, hello.width, hello.height)
             link.commands = Commands(session, lambda message: visit.tell(message))
-            link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params)
+            link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params, session.given)
             session.join(link.viewer)
             link.seen()
         except Full:

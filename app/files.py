@@ -59,12 +59,14 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
         if (session := _session(sessions, slug, room, key)) is None:
             raise Refusal(404, GONE)
         length = _length(request, largest)
-        if sessions.kept_bytes() + length > KEPT * largest:
+        if sessions.uploaded_bytes() + length > KEPT * largest:
             raise Refusal(503, BUSY)
         async with coming.received(request, length) as data:
-            kept, changes = await _read(sessions, session, name[:200], data, largest)
-            if not await request.is_disconnected():  # else it was given up meanwhile
-                session.keep(kept, len(data), changes)
+            known_as, changes = await _read(sessions, session, name[:200], data)
+            if await request.is_disconnected() or sessions.find(session.sim, session.room) is not session:
+                session.forget(known_as)
+            else:
+                session.upload(known_as, len(data), changes)
         return JSONResponse({"name": name}, headers=ANYWHERE)
 
     @app.get("/sims/{slug}/s/{room}/{key}/result/{name}", include_in_schema=False)
@@ -73,7 +75,7 @@ def add_files(app: FastAPI, sessions: Sessions, largest: int) -> None:
         make = None if session is None else session.sim.downloads.get(name)
         if session is None or make is None:
             raise HTTPException(404, GONE if session is None else "There is no such file.")
-        data = await asyncio.get_running_loop().run_in_executor(sessions.aside, make, session.params)
+        data = await asyncio.get_running_loop().run_in_executor(sessions.aside, make, session.params, *session.given)
         headers = {"content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store"}
         return Response(data, media_type="application/octet-stream", headers=headers)
 
@@ -120,14 +122,11 @@ def _length(request: Request, largest: int) -> int:
     return length
 
 
-async def _read(
-    sessions: Sessions, session: Session, name: str, data: bytes, largest: int
-) -> tuple[object, Mapping[str, Any]]:
-    files = session.sim.files
-    if files is None:
+async def _read(sessions: Sessions, session: Session, name: str, data: bytes) -> tuple[str, Mapping[str, Any]]:
+    if session.library is None:
         raise Refusal(404, "This sim takes no files.")
     loop = asyncio.get_running_loop()
     try:
-        return await loop.run_in_executor(sessions.aside, files.read, name, data, largest)
+        return await loop.run_in_executor(sessions.aside, session.library.add, name, data)
     except ValueError as error:
         raise Refusal(422, str(error)) from None

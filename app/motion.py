@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from typing import Any
 
 from sims.kit.params import Params
@@ -35,10 +35,12 @@ def gliding(start: Params, target: Params) -> dict[str, Any]:
     return {name: b for name, (a, b) in found.items() if target.kinds[name].glides(a, b)}
 
 
-async def play(steps: Iterator[Step], now: Callable[[], Params], *, reduced: bool) -> AsyncIterator[Mapping[str, Any]]:
+async def play(
+    steps: AsyncIterator[Step], now: Callable[[], Params], *, reduced: bool
+) -> AsyncIterator[Mapping[str, Any]]:
     """Yield changes frame by frame; under reduced motion only each step's end, with a pause."""
     loop = asyncio.get_running_loop()
-    for step in steps:
+    async for step in steps:
         start = now()
         if reduced or step.seconds <= 0.0:
             yield step.changes

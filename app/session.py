@@ -13,7 +13,7 @@ import logging
 import re
 import secrets
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import suppress
 from contextvars import copy_context
 from typing import Any
@@ -24,9 +24,10 @@ from app.motion import gliding, play
 from app.trouble import Unknown, error_message
 from app.workers import Solver, workers
 from sims.kit import child
+from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, Work, at_work
-from sims.kit.sim import Sim, Step, jsonable
+from sims.kit.sim import Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
 log = logging.getLogger("sim3")
@@ -51,11 +52,16 @@ WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 class Session:
     """One running sim."""
 
-    def __init__(self, sim: Sim[Any, Any], room: str, params: Params, solver: Solver) -> None:
+    def __init__(
+        self, sim: Sim[Any, Any], room: str, params: Params, solver: Solver, library: Library | None = None
+    ) -> None:
         self.sim = sim
         self.room = room
         self.params = self.initial = self._solved = params
-        self.solution: Any = None if sim.heavy else sim.solve(params)
+        self.library = library
+        self.given = () if library is None else (library,)
+        """What the sim's functions need besides the parameters."""
+        self.solution: Any = None if sim.heavy else sim.solve(params, *self.given)
         """None until what takes long is there."""
         self.viewers: set[Viewer] = set()
         self.listeners: set[Callable[[dict[str, Any]], None]] = set()
@@ -71,16 +77,16 @@ class Session:
         self._dirty = False
         self._motion: asyncio.Task[None] | None = None
         self._seeking: asyncio.Task[None] | None = None
-        self._sought: tuple[Callable[..., Mapping[str, Any]], tuple[float, ...]] | None = None
+        self._sought: tuple[Callable[[], Any], Callable[[Any], None]] | None = None
         self._pointing: Callable[[dict[str, Any]], None] | None = None
         self._told_at = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self.reduced_motion = False
         self.waiting = False
         """Only people who watch have come so far."""
-        self.kept: object = None
-        """What was made of the file that somebody brought; it lives as long as the session."""
-        self.kept_bytes = 0
+        self.uploaded = ""
+        """What the library knows the file as that somebody uploaded; it stays there as long as the session lives."""
+        self.uploaded_bytes = 0
         if sim.heavy:
             self.redraw()
 
@@ -97,7 +103,10 @@ class Session:
         """
         self.stop_motion()
         self.redraw()  # also where nothing changes: a control that was moved too far goes back
-        self._set(self.params.moved(changes) if live else self.params.changed(changes))
+        self._set(self._offers().moved(changes) if live else self.params.changed(changes))
+
+    def _offers(self) -> Offers[Any]:
+        return self.sim.offers(self.params, self.solution, *self.given)
 
     def glide(self, changes: Mapping[str, Any], seconds: float) -> None:
         """Take changes as from a link, and go there within some seconds; at once where motion is reduced.
@@ -120,29 +129,33 @@ class Session:
         if handle is None:
             raise Unknown("handle", name, self.sim.handles)
         if not self.sim.heavy:
-            self.change(handle(self.params, place))
+            self.change(handle(self.params, place, *self.given))
             return
-        self._sought = handle, place
-        if self._seeking is None:
-            self._seeking = asyncio.get_running_loop().create_task(self._seek())
+        self._seek(lambda: handle(self.params, place, *self.given), self.change)
 
-    async def _seek(self) -> None:
-        """Find out in the pool what a handle's place means; of places that come meanwhile only the last counts."""
+    def _seek(self, find: Callable[[], Any], take: Callable[[Any], None]) -> None:
+        """Find something out in the pool, and take it; of what comes meanwhile only the last counts."""
+        self._sought = find, take
+        if self._seeking is None:
+            self._seeking = asyncio.get_running_loop().create_task(self._find())
+
+    async def _find(self) -> None:
         try:
             while self._sought is not None:
-                (handle, place), self._sought = self._sought, None
+                (find, take), self._sought = self._sought, None
                 try:
                     async with self._turn:
-                        changes = await self._solver.run(handle, self.params, place)
-                    self.change(changes)
+                        found = await self._solver.run(find)
+                    take(found)
                 except Exception as error:
                     self._tell(error_message(self.sim, error))
         finally:
             self._seeking = None
 
-    def keep(self, kept: object, size: int, changes: Mapping[str, Any]) -> None:
-        """Take what was made of a file of some bytes, in place of that of the file before."""
-        self.kept, self.kept_bytes = kept, size
+    def upload(self, known_as: str, size: int, changes: Mapping[str, Any]) -> None:
+        """Show a file of some bytes that the library has taken, in place of the one before."""
+        self.forget(self.uploaded)
+        self.uploaded, self.uploaded_bytes = known_as, size
         self.stop_motion()
         self._set(self.params.moved(changes))
 
@@ -174,7 +187,12 @@ class Session:
         action = next((a for a in self.sim.actions if a.name == name), None)
         if action is None:
             raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
-        result = action.run(self.params)
+        if self.sim.heavy:
+            self._seek(lambda: action.run(self.params, *self.given), self._take_result)
+        else:
+            self._take_result(action.run(self.params, *self.given))
+
+    def _take_result(self, result: Mapping[str, Any] | Iterator[Step]) -> None:
         if isinstance(result, Mapping):
             self._set(self.params.changed(result))
         else:
@@ -182,6 +200,14 @@ class Session:
 
     def _begin(self, motion: Iterator[Step]) -> None:
         self._motion = asyncio.get_running_loop().create_task(self._play(motion))
+
+    async def _each(self, steps: Iterator[Step]) -> AsyncIterator[Step]:
+        """The steps of a motion; what takes long is found out in the pool."""
+        while True:
+            step = await self._solver.run(next, steps, None) if self.sim.heavy else next(steps, None)
+            if step is None:
+                return
+            yield step
 
     def stop_motion(self) -> None:
         """End a running animation where it is."""
@@ -191,7 +217,7 @@ class Session:
 
     async def _play(self, steps: Iterator[Step]) -> None:
         try:
-            async for changes in play(steps, lambda: self.params, reduced=self.reduced_motion):
+            async for changes in play(self._each(steps), lambda: self.params, reduced=self.reduced_motion):
                 self._set(self.params.moved(changes))
                 if self.sim.heavy and self._drawing is not None:  # what takes long is seen before the motion goes on
                     await asyncio.wait([self._drawing])
@@ -268,13 +294,13 @@ class Session:
 
     async def _solve(self, params: Params) -> Any:
         if not self.sim.heavy:
-            return self.sim.solve(params)
+            return self.sim.solve(params, *self.given)
         work = self._work = Work(self._wanted(time.monotonic() + PATIENCE), "Waiting until others' work is done")
         context = copy_context()
         context.run(at_work.set, work)
         try:
             async with self._turn:
-                found = await self._solver.run(context.run, self.sim.solve, params)
+                found = await self._solver.run(context.run, self.sim.solve, params, *self.given)
         finally:
             self._work = None
         if work.cancelled:
@@ -355,6 +381,19 @@ class Session:
             self.left_at = time.monotonic()
             self.stop_motion()
 
+    def end(self) -> list[asyncio.Task[None]]:
+        """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
+        self.forget(self.uploaded)
+        working = [task for task in (self._drawing, self._motion, self._seeking) if task is not None]
+        for task in working:
+            task.cancel()
+        return working
+
+    def forget(self, known_as: str) -> None:
+        """Have the library forget an uploaded file."""
+        if self.library is not None:
+            self.library.remove(known_as)
+
     @property
     def occupied(self) -> bool:
         """Somebody looks at it."""
@@ -368,8 +407,10 @@ class Full(RuntimeError):
 class Sessions:
     """All sessions of this process, by sim and room."""
 
-    def __init__(self, limit: int) -> None:
+    def __init__(self, limit: int, libraries: Mapping[str, Library] | None = None) -> None:
         self._limit = limit
+        self._libraries = libraries or {}
+        """Of the sims that have files, by slug."""
         self._by_room: dict[tuple[str, str], Session] = {}
         self._solver = Solver()
         self.aside = workers("aside", 1)
@@ -381,9 +422,14 @@ class Sessions:
     def __len__(self) -> int:
         return len(self._by_room)
 
-    def kept_bytes(self) -> int:
+    def uploaded_bytes(self) -> int:
         """Bytes of all files that sessions keep."""
-        return sum(session.kept_bytes for session in self._by_room.values())
+        return sum(session.uploaded_bytes for session in self._by_room.values())
+
+    def given(self, sim: Sim[Any, Any]) -> tuple[Library, ...]:
+        """What a sim's functions need besides the parameters."""
+        library = self._libraries.get(sim.slug)
+        return () if library is None else (library,)
 
     def find(self, sim: Sim[Any, Any], room: str) -> Session | None:
         """The running session of a room."""
@@ -401,7 +447,9 @@ class Sessions:
             self.sweep()
             if len(self._by_room) >= self._limit:
                 self._drop_one()
-            session = self._by_room[sim.slug, room] = Session(sim, room, params, self._solver)
+            session = self._by_room[sim.slug, room] = Session(
+                sim, room, params, self._solver, self._libraries.get(sim.slug)
+            )
             session.waiting = True
             if sim.ahead and sim.slug not in self._begun and session._drawing is not None:
                 self._begun.add(sim.slug)
@@ -422,17 +470,19 @@ class Sessions:
         empty = [(s.left_at, key) for key, s in self._by_room.items() if not s.occupied and s.left_at < before]
         if not empty:
             raise Full
-        del self._by_room[min(empty)[1]]
+        self._by_room.pop(min(empty)[1]).end()
 
     def sweep(self) -> None:
         """Forget sessions that nobody has looked at for a while."""
         now = time.monotonic()
         for key, session in list(self._by_room.items()):
             if not session.occupied and now - session.left_at > UNVISITED:
-                del self._by_room[key]
+                self._by_room.pop(key).end()
 
-    def close(self) -> None:
-        """End the pools, and the processes that read files."""
+    async def close(self) -> None:
+        """End the sessions, the pools, and the processes that read files."""
+        working = [task for session in self._by_room.values() for task in session.end()]
+        await asyncio.gather(*working, return_exceptions=True)
         child.stop()
         self.aside.shutdown(wait=False, cancel_futures=True)
         self._ahead.shutdown(wait=False, cancel_futures=True)

@@ -37,17 +37,15 @@ AnySim = Sim[Any, Any]
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     """The application, bound to a running viser host."""
-    sessions = Sessions(settings.max_sessions)
     largest = settings.max_upload * 1_000_000
-    for sim in SIMS:
-        if sim.files is not None and settings.cloud_dir is not None:
-            sim.files.offer(settings.cloud_dir, largest)
+    libraries = {sim.slug: sim.files.library(settings.cloud_dir, largest) for sim in SIMS if sim.files is not None}
+    sessions = Sessions(settings.max_sessions, libraries)
     bridge = Bridge(host, sessions, settings.origins)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         yield
-        sessions.close()
+        await sessions.close()
         answers.close()
 
     app = FastAPI(
@@ -64,7 +62,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     app.mount("/static", Static(directory=ROOT / "static"), name="static")
     _add_errors(app)
     _add_pages(app, sessions, largest)
-    app.state.answers = answers = add_api(app)
+    app.state.answers = answers = add_api(app, sessions)
     _add_sockets(app, bridge)
     add_files(app, sessions, largest)
 

@@ -233,7 +233,7 @@ class Browser:
                 listener(message)
 
         commands = Commands(session, tell)
-        viewer = Viewer(session.sim, self.client, commands, look, session.params)
+        viewer = Viewer(session.sim, self.client, commands, look, session.params, session.given)
         session.join(viewer)
         return viewer
 
@@ -374,7 +374,7 @@ class Rig:
         """Everybody leaves."""
         for browser in self.browsers:
             browser.leave()
-        self._sessions.close()
+        self.host.wait(self._sessions.close())
         logging.getLogger("sim3").removeHandler(self._log)
 
     def problems(self) -> list[str]:

@@ -11,13 +11,15 @@ import viser
 
 from sims.kit import fields
 from sims.kit.entries import Entries
+from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.sim import Typed
 from sims.kit.viser_internals import set_property, set_value
 
 OTHER = "another"
 """What a list of presets shows for a value that isn't one of them."""
-Changes = Mapping[str, Any]
+Change = Callable[[Mapping[str, Any]], None]
+AnyOffers = Offers[Any]
 Listen = Callable[[Any, Callable[[Any], None]], None]
 """Told of a handle, and of what takes the values that a page sets it to."""
 
@@ -25,22 +27,28 @@ Listen = Callable[[Any, Callable[[Any], None]], None]
 class Control(Protocol):
     """What shows a parameter, and is told of each state."""
 
-    def draw(self, params: Params) -> None: ...
+    def draw(self, offers: AnyOffers) -> None: ...
 
-    def reword(self, params: Params) -> None:
+    def reword(self, offers: AnyOffers) -> None:
         """Adapt label, bounds and what is offered, before a value that needs them is drawn."""
 
 
 def controls(
-    gui: viser.GuiApi, params: Params, name: str, *, disabled: bool, listen: Listen, change: Callable[[Changes], None]
+    gui: viser.GuiApi,
+    offers: AnyOffers,
+    name: str,
+    *,
+    disabled: bool,
+    listen: Listen,
+    change: Change,
 ) -> Iterator[Control]:
     """Make the controls of a parameter; what a page sets them to is told to `change`."""
-    shared = {"hint": type(params).model_fields[name].description, "disabled": disabled}
-    kind = params.kinds[name]
+    shared = {"hint": type(offers.params).model_fields[name].description, "disabled": disabled}
+    kind = offers.params.kinds[name]
     if isinstance(kind, fields.Numbers | fields.Letters):
-        yield Entries(gui, params, name, shared, listen, change)
+        yield Entries(gui, offers, name, shared, listen, change)
         return
-    control = _control(gui, params, name, kind, shared)
+    control = _control(gui, offers, name, kind, shared)
     listen(control.handle, lambda shown: change({name: control.value(shown)}))
     yield control
     if isinstance(kind, fields.Vector) and kind.presets:
@@ -51,8 +59,8 @@ def controls(
         yield Preset(name, handle, {value: word for word, value in presets.items()})
 
 
-def _control(gui: viser.GuiApi, params: Params, name: str, kind: fields.Kind, shared: Any) -> Single:
-    label, value = worded(params, name), getattr(params, name)
+def _control(gui: viser.GuiApi, offers: AnyOffers, name: str, kind: fields.Kind, shared: Any) -> Single:
+    label, value = worded(offers, name), getattr(offers.params, name)
     match kind:
         case fields.Switch():
             return Single(name, gui.add_checkbox(label, value, **shared), label)
@@ -61,11 +69,11 @@ def _control(gui: viser.GuiApi, params: Params, name: str, kind: fields.Kind, sh
             add: Any = gui.add_vector2 if len(kind.each) == 2 else gui.add_vector3
             return Single(name, add(label, value, min=least, max=greatest, step=kind.step, **shared), label)
         case fields.Slider():
-            return Slider.made(gui, params, name, label, shared)
+            return Slider.made(gui, offers, name, label, shared)
         case fields.NumberBox():
-            return NumberBox.made(gui, params, name, label, shared)
+            return NumberBox.made(gui, offers, name, label, shared)
         case _:
-            return Dropdown.made(gui, params, name, label, shared)
+            return Dropdown.made(gui, offers, name, label, shared)
 
 
 @dataclass
@@ -76,8 +84,8 @@ class Single:
     handle: Any
     label: str
 
-    def draw(self, params: Params) -> None:
-        set_value(self.handle, self.shown(getattr(params, self.name)))
+    def draw(self, offers: AnyOffers) -> None:
+        set_value(self.handle, self.shown(getattr(offers.params, self.name)))
 
     def shown(self, value: Any) -> Any:
         """What the control says for a value."""
@@ -87,8 +95,8 @@ class Single:
         """What the learner set. Raises LookupError for what isn't offered."""
         return shown
 
-    def reword(self, params: Params) -> None:
-        if (label := worded(params, self.name)) != self.label:
+    def reword(self, offers: AnyOffers) -> None:
+        if (label := worded(offers, self.name)) != self.label:
             self.label = self.handle.label = label
 
 
@@ -100,19 +108,19 @@ class Slider(Single):
     increment: float
 
     @classmethod
-    def made(cls, gui: viser.GuiApi, params: Params, name: str, label: str, shared: Any) -> Slider:
-        bounds, increment = params.bounds(name), params.increment(name)
-        handle = gui.add_slider(label, *bounds, increment, getattr(params, name), **shared)
+    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> Slider:
+        bounds, increment = offers.bounds(name), offers.increment(name)
+        handle = gui.add_slider(label, *bounds, increment, getattr(offers.params, name), **shared)
         return cls(name, handle, label, bounds, increment)
 
-    def reword(self, params: Params) -> None:
-        if (bounds := params.bounds(self.name)) != self.bounds:
+    def reword(self, offers: AnyOffers) -> None:
+        if (bounds := offers.bounds(self.name)) != self.bounds:
             self.bounds = bounds
             self.handle.min, self.handle.max = bounds
-        if (increment := params.increment(self.name)) != self.increment:
+        if (increment := offers.increment(self.name)) != self.increment:
             self.increment = self.handle.step = increment
             self.handle.precision = decimals(increment)
-        super().reword(params)
+        super().reword(offers)
 
 
 @dataclass
@@ -122,12 +130,12 @@ class NumberBox(Single):
     absent: float | None
 
     @classmethod
-    def made(cls, gui: viser.GuiApi, params: Params, name: str, label: str, shared: Any) -> NumberBox:
-        (low, high), step = params.bounds(name), params.increment(name)
+    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> NumberBox:
+        (low, high), step = offers.bounds(name), offers.increment(name)
         absent: float | None = None
-        if type(params).model_fields[name].default is None:
+        if type(offers.params).model_fields[name].default is None:
             low = absent = low - step
-        value = getattr(params, name)
+        value = getattr(offers.params, name)
         add: Any = gui.add_number  # its type wants the numbers all whole, or none
         handle = add(label, absent if value is None else value, min=low, max=high, step=step, **shared)
         return cls(name, handle, label, absent)
@@ -146,9 +154,9 @@ class Dropdown(Single):
     offered: Mapping[Any, str]
 
     @classmethod
-    def made(cls, gui: viser.GuiApi, params: Params, name: str, label: str, shared: Any) -> Dropdown:
-        offered = params.options(name)
-        value = offered[getattr(params, name)]
+    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> Dropdown:
+        offered = offers.options(name)
+        value = offered[getattr(offers.params, name)]
         return cls(
             name, gui.add_dropdown(label, tuple(offered.values()), initial_value=value, **shared), label, offered
         )
@@ -159,11 +167,11 @@ class Dropdown(Single):
     def value(self, shown: Any) -> Any:
         return {words: value for value, words in self.offered.items()}[shown]
 
-    def reword(self, params: Params) -> None:
-        if (offered := params.options(self.name)) != self.offered:
+    def reword(self, offers: AnyOffers) -> None:
+        if (offered := offers.options(self.name)) != self.offered:
             self.offered = offered
             set_property(self.handle, "options", tuple(offered.values()))
-        super().reword(params)
+        super().reword(offers)
 
 
 @dataclass
@@ -174,10 +182,10 @@ class Preset:
     handle: Any
     words: Mapping[Any, str]
 
-    def draw(self, params: Params) -> None:
-        set_value(self.handle, self.words.get(getattr(params, self.name), OTHER))
+    def draw(self, offers: AnyOffers) -> None:
+        set_value(self.handle, self.words.get(getattr(offers.params, self.name), OTHER))
 
-    def reword(self, params: Params) -> None:
+    def reword(self, offers: AnyOffers) -> None:
         """Its words don't depend on the state."""
 
 
@@ -196,11 +204,11 @@ class TypedPlace:
             self.visible = self.handle.visible = place is not None
 
 
-def worded(params: Params, name: str) -> str:
+def worded(offers: AnyOffers, name: str) -> str:
     """The label of a control, with its unit."""
-    kind = params.kinds[name]
+    kind = offers.params.kinds[name]
     unit = kind.unit if isinstance(kind, fields.Numeric) else ""
-    return f"{params.label(name)} ({unit})" if unit else params.label(name)
+    return f"{offers.label(name)} ({unit})" if unit else offers.label(name)
 
 
 def decimals(increment: float) -> int:

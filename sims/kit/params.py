@@ -6,7 +6,7 @@ A field's type says its kind (`sims.kit.fields`); the string below it says what 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, ClassVar, Self
 from urllib.parse import urlencode
 
@@ -57,10 +57,6 @@ class Params(BaseModel):
         assert isinstance(kind, Numbers | Letters)
         return kind.entry.format(k + 1)
 
-    def entries(self, name: str) -> Any:
-        """The entries of a list that have a control each in this state."""
-        return getattr(self, name)
-
     def increment(self, name: str) -> float:
         """By how much a step of a slider changes a number in this state."""
         return float(self.numeric[name].step)
@@ -87,7 +83,7 @@ class Params(BaseModel):
 
         `angles.2` is the entry of `angles` after the first two: a control of one entry leaves the others alone.
         """
-        changes = self._whole(changes)
+        changes = with_entries(changes, self.__dict__.__getitem__)
         if len(changes) == 1 and (fast := self._number_moved(*next(iter(changes.items())))):
             return fast
         state = self.model_copy(update=dict(changes))
@@ -100,17 +96,6 @@ class Params(BaseModel):
             return None
         low, high = self.bounds(name)
         return self.model_copy(update={name: min(max(value, low), high)})
-
-    def _whole(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        whole: dict[str, Any] = {}
-        for name, value in changes.items():
-            field, _, k = name.partition(".")
-            if not k:
-                whole[name] = value
-            elif int(k) < len(entries := whole.get(field, self.entries(field))):  # else it was taken away meanwhile
-                put = value if isinstance(entries, str) else (value,)
-                whole[field] = entries[: int(k)] + put + entries[int(k) + 1 :]
-        return whole
 
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
@@ -175,6 +160,19 @@ class Params(BaseModel):
             return cls.model_validate({name: cls.kinds[name].unspell(text) for name, text in texts.items()}), {}
         except ValidationError as error:
             return None, dict(_complaints(cls, error))
+
+
+def with_entries(changes: Mapping[str, Any], entries: Callable[[str], Any]) -> dict[str, Any]:
+    """Changes of single entries as changes of their lists, which `entries` finds by their names."""
+    whole: dict[str, Any] = {}
+    for name, value in changes.items():
+        field, _, k = name.partition(".")
+        if not k:
+            whole[name] = value
+        elif int(k) < len(before := whole.get(field, entries(field))):  # else it was taken away meanwhile
+            put = value if isinstance(before, str) else (value,)
+            whole[field] = before[: int(k)] + put + before[int(k) + 1 :]
+    return whole
 
 
 def _kind(model: type[Params], name: str, field: FieldInfo) -> Kind:

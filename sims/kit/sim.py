@@ -10,6 +10,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from sims.kit.offers import Offers
 from sims.kit.pane import Pane
 from sims.kit.params import Params
 from sims.kit.readout import Readout
@@ -46,13 +47,13 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Action(Generic[P]):
+class Action:
     """A button: from a state to the next one, or to a motion that ends in one."""
 
     name: str
     label: str
     hint: str
-    run: Callable[[P], Mapping[str, Any] | Iterator[Step]]
+    run: Callable[..., Mapping[str, Any] | Iterator[Step]]
     group: str = ""
     """Folder in which it stands, closed at first."""
 
@@ -74,23 +75,35 @@ class Typed(Generic[P, S]):
     unit: str = "m"
 
 
+class Library(Protocol):
+    """The files that a server's sessions can show."""
+
+    def add(self, name: str, data: bytes) -> tuple[str, Mapping[str, Any]]:
+        """Take a learner's file; return what it is known as, and the changes of the state that show it.
+
+        Runs beside the event loop. Raises ValueError in words for the learner.
+        """
+
+    def remove(self, known_as: str) -> None:
+        """Forget a learner's file."""
+
+
 @dataclass(frozen=True)
 class Files:
-    """Files that a learner may bring into a session.
+    """Files that a learner may upload.
 
-    `read` makes of a name, bytes and the largest number of bytes that the server takes what the session keeps as long
-    as it lives, and the changes that show it. It runs beside the event loop, and raises ValueError in words for the
-    learner. `offer` is told of the administrator's folder, where there is one, and of that number.
+    The sim's `solve`, `offers`, actions, handles and downloads, and the `preview`, get the server's library of them as
+    their last argument.
     """
 
     group: str
-    """Folder of the controls in which a file is brought."""
+    """Folder of the controls in which a file is uploaded."""
     endings: tuple[str, ...]
-    read: Callable[[str, bytes, int], tuple[object, Mapping[str, Any]]]
-    offer: Callable[[Path, int], None]
+    library: Callable[[Path | None, int], Library]
+    """Makes a server's library, of the administrator's folder and the largest number of bytes that a file may have."""
     previewed: str = ""
     """The parameter above whose controls the `preview` stands: what a file holds, or None."""
-    preview: Callable[[Any], Readout | None] = lambda _: None
+    preview: Callable[..., Readout | None] = lambda *_: None
 
 
 @dataclass(frozen=True)
@@ -120,25 +133,29 @@ class Sim(Generic[P, S]):
     concepts: tuple[str, ...]
     objectives: tuple[Objective, ...]
     params: type[P]
-    solve: Callable[[P], S]
+    solve: Callable[..., S]
+    """From the parameters to their solution."""
     scene: type[Scene[P, S]]
     readouts: Callable[[P, S], Iterable[Readout]]
     describe: Callable[[P, S], str]
     view: View
-    actions: Sequence[Action[P]] = ()
+    actions: Sequence[Action] = ()
     view_of: Callable[[P], View] | None = None
     """The first view of a state, where it isn't always `view`."""
     panes: Callable[[P, S], Sequence[Pane]] | None = None
     selects: str = "selected"
     """The parameter that a click on what is linked across scene, pictures and tables sets."""
-    handles: Mapping[str, Callable[[P, tuple[float, ...]], Mapping[str, Any]]] = field(default_factory=dict)
+    offers: Callable[..., Offers[P]] = Offers
+    """What the controls offer, of parameters and the last solution (None before there is one)."""
+    handles: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
+    """What dragging a node or a mark in a picture, or clicking a node, changes: of parameters and place."""
     typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
-    downloads: Mapping[str, Callable[[P], bytes]] = field(default_factory=dict)
+    downloads: Mapping[str, Callable[..., bytes]] = field(default_factory=dict)
     """Files that can be had of a state, by name."""
     heavy: bool = False
-    """Solving can take over 5 ms: it runs in the pool, beside the event loop."""
+    """Solving can take over 5 ms: it runs in the pool, beside the event loop, as do actions and handles."""
     ahead: Sequence[Callable[[], object]] = ()
     """Work that somebody will need soon: done one after the other when the sim was first opened on a server."""
 

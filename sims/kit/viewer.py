@@ -16,10 +16,11 @@ import viser
 from geometry import GeometryError
 from sims.kit import pane, readout
 from sims.kit.controls import Control, TypedPlace, controls, worded
+from sims.kit.offers import Offers
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import Sim, Typed
+from sims.kit.sim import Library, Sim, Typed
 from sims.kit.types import Place
 from sims.kit.viser_internals import control_id, received, set_property
 
@@ -80,8 +81,13 @@ class Input(NamedTuple):
 class Viewer:
     """Everything that one viser client shows."""
 
-    def __init__(self, sim: Sim[Any, Any], client: viser.ClientHandle, host: Host, look: Look, params: Params) -> None:
+    def __init__(
+        self, sim: Sim[Any, Any], client: viser.ClientHandle, host: Host, look: Look, params: Params,
+        library: tuple[Library, ...] = (),
+    ) -> None:  # fmt: skip
         self.sim = sim
+        self._library = library
+        """The server's, where the sim has files."""
         self.client = client
         self.look = look
         self.palette = DARK if look.dark else LIGHT
@@ -105,7 +111,7 @@ class Viewer:
         self._readouts: viser.GuiHtmlHandle | None = None
         self._preview: viser.GuiHtmlHandle | None = None
         if look.controls:
-            self._add_controls(params)
+            self._add_controls(sim.offers(params, None, *library))
         if self._panes is None:
             self._panes = self._add_panes()
         if look.controls:
@@ -136,19 +142,20 @@ class Viewer:
             if not self._live:
                 self._live = True
                 self.client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window
-            if (form := params.form()) != self._form:
+            offers = self.sim.offers(params, solution, *self._library)
+            if (form := offers.form()) != self._form:
                 self._form = form
                 for control in self._controls:
-                    control.reword(params)
+                    control.reword(offers)
             for control in self._controls:
-                control.draw(params)
+                control.draw(offers)
             for place in self._places:
                 place.draw(params, solution)
             if self._readouts is not None:
-                html = readout.render(self.sim.readouts(params, solution)) + self._regions(params)
+                html = readout.render(self.sim.readouts(params, solution)) + self._regions(offers)
                 set_property(self._readouts, "content", html)
             if self._preview is not None and self.sim.files is not None:
-                preview = self.sim.files.preview(params)
+                preview = self.sim.files.preview(params, *self._library)
                 set_property(self._preview, "content", "" if preview is None else readout.render([preview]))
             if self._panes is not None and self.sim.panes is not None:
                 panes = self.sim.panes(params, solution)
@@ -181,10 +188,10 @@ class Viewer:
                 self._light(name)
             self.client.flush()
 
-    def _regions(self, params: Params) -> str:
+    def _regions(self, offers: Offers[Any]) -> str:
         """Where on a slider's track something happens, as fractions, for the companion to mark."""
         return _marks(
-            tuple((worded(params, name), params.bounds(name), tuple(s)) for name, s in params.regions().items())
+            tuple((worded(offers, name), offers.bounds(name), tuple(s)) for name, s in offers.params.regions().items())
         )
 
     @property
@@ -220,10 +227,10 @@ class Viewer:
             panel.set_width(PICTURES)
         return html
 
-    def _add_controls(self, params: Params) -> None:
+    def _add_controls(self, offers: Offers[Any]) -> None:
         gui = self.client.gui
         groups: dict[str, list[str]] = {}
-        for name, kind in params.kinds.items():
+        for name, kind in offers.params.kinds.items():
             if not kind.hidden:
                 groups.setdefault(kind.group, []).append(name)
         for group, names in groups.items():
@@ -232,7 +239,7 @@ class Viewer:
                     if self.sim.files is not None and name == self.sim.files.previewed:
                         self._preview = gui.add_html("")
                     self._controls += controls(
-                        gui, params, name, disabled=self.look.watching, listen=self._listen, change=self._host.change
+                        gui, offers, name, disabled=self.look.watching, listen=self._listen, change=self._host.change
                     )
                 if self.sim.files is not None and group == self.sim.files.group:
                     gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))

@@ -5,9 +5,11 @@ from __future__ import annotations
 from functools import partial
 
 from sims.kit.sim import Action, Contract, Files, Objective, Sim
-from sims.point_cloud import actions, library
+from sims.point_cloud import actions
 from sims.point_cloud.datasets import DATASETS, dataset
 from sims.point_cloud.files import FORMATS
+from sims.point_cloud.library import Library
+from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.panes import panes
 from sims.point_cloud.params import OWN, VIEWS, CloudParams, view_of
 from sims.point_cloud.readouts import describe, preview, readouts
@@ -63,7 +65,8 @@ SIM = Sim(
         "file that is gone": {"dataset": "file", "file": "upload-gone", "process": "surface"},
         "nothing left": {"process": "clusters", "step": 1, "voxel_size": 1.0},
     },
-    files=Files(OWN, tuple(FORMATS), library.bring, library.offer, "columns", preview),
+    files=Files(OWN, tuple(FORMATS), Library, "columns", preview),
+    offers=CloudOffers,
     downloads={"point-cloud.ply": ply},
     heavy=True,
     ahead=[partial(dataset, name) for name in DATASETS],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
@@ -12,11 +11,8 @@ from sims.kit.fields import Choice, Letters, NumberBox, Slider, Switch, Text
 from sims.kit.params import Params
 from sims.kit.sim import View
 from sims.kit.spelling import spell
-from sims.point_cloud import library, processes
-from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import ROLES, letters_of
-from sims.point_cloud.layers import whole
-from sims.point_cloud.processes import MOST_STEPS
+from sims.point_cloud.processes import LAST, MOST_STEPS
 
 MOST_POINTS = 10_000_000
 VIEWS = {
@@ -26,6 +22,12 @@ VIEWS = {
     "two-scans": View((3.4, -5.6, 3.4), (-0.1, -0.1, 0.95), 3.3),
 }
 OWN = "Your own data"
+UPLOAD = "upload-"
+"""What the name of a learner's file begins with."""
+NAME = r'^[^/\\\x00-\x1f"<>|:*?]{1,120}$'
+"""A file's name, without a path."""
+Chosen = tuple[str, str]
+"""What columns and units are taken for: a letter for each of the first columns (`files.meaning.LETTERS`), a unit."""
 MOST_COLUMNS = 12
 """That can be chosen; those behind are as they are guessed."""
 REACH = {"voxel_size": 1.0, "distance": 2.0}
@@ -45,7 +47,7 @@ WHAT_DISTANCE_IS = {
 
 def first_step(process: Any) -> int:
     """Where a process is when nobody says where."""
-    return 0 if process == "register" else 2
+    return 0 if process == "register" else LAST
 
 
 class CloudParams(Params):
@@ -126,7 +128,7 @@ class CloudParams(Params):
     """Outliers are this many standard deviations farther from their neighbours than is usual"""
 
     file: Annotated[
-        str | None, Text(title="File", pattern=library.NAME, format="the name of a file, without a path", group=OWN)
+        str | None, Text(title="File", pattern=NAME, format="the name of a file, without a path", group=OWN)
     ] = None
     """A cloud of your own, or one of this server's folder"""
     units: Annotated[
@@ -158,9 +160,6 @@ class CloudParams(Params):
     ] = ""
     """What each column of the file is taken for; of one for which nothing is chosen, it is guessed"""
 
-    def options(self, name: str) -> Mapping[Any, str]:
-        return library.offered(self.file) if name == "file" else super().options(name)
-
     @model_validator(mode="before")
     @classmethod
     def _begun(cls, values: Any) -> Any:
@@ -174,97 +173,39 @@ class CloudParams(Params):
         return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
 
     @property
-    def choice(self) -> library.Choice:
+    def choice(self) -> Chosen:
         """In which way the file is read."""
         return self.columns, self.units
-
-    def _known(self) -> Cloud:
-        """The file's cloud, as far as it has been read."""
-        return library.known(self.file, self.choice) if self.dataset == "file" else library.NOTHING
-
-    def guess(self) -> Cloud:
-        """The file's cloud with columns and units as guessed, as far as it has been read."""
-        return library.known(self.file) if self.dataset == "file" else library.NOTHING
-
-    def entries(self, name: str) -> Any:
-        """The columns' dropdowns say what is guessed where nothing is chosen."""
-        if name != "columns":
-            return super().entries(name)
-        guessed = letters_of(self.guess().roles[:MOST_COLUMNS])
-        return self.columns + guessed[len(self.columns) :]
-
-    def entry_label(self, name: str, k: int) -> str:
-        names = self.guess().columns if name == "columns" else ()
-        label = super().entry_label(name, k)
-        return f"{label}: {names[k][:24]}" if k < len(names) and names[k] else label
 
     @property
     def facing(self) -> int:
         """Neighbours that a registration's normals follow from: to points it needs none, and they change nothing."""
         return self.neighbors if self.method == "plane" else 16
 
-    @property
-    def course(self) -> tuple[Any, ...]:
-        """All that a registration follows from."""
-        return self.dataset, self.file, self.choice, self.voxel_size, self.facing, self.method, self.distance
-
-    @property
-    def last_step(self) -> int:
-        """The process's last step, as far as that is known: a registration must have been worked out once."""
-        return processes.LENGTHS.get(self.course, MOST_STEPS) if self.process == "register" else 2
-
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step":
-            return 0, max(self.last_step, self.step, 1)  # a link may name any step: beyond the last one is the last
-        if name in REACH:
-            return 0.0, REACH[name] if self.dataset != "file" else max(self._reach(name), getattr(self, name))
+            last = MOST_STEPS if self.process == "register" else LAST
+            return 0, max(last, self.step)  # a link may name any step: beyond the last one is the last
+        if name in REACH and self.dataset != "file":
+            return 0.0, REACH[name]
         return super().bounds(name)
-
-    def _reach(self, name: str) -> float:
-        """The greatest length that a slider offers: a round one, about a tenth of the cloud's size."""
-        cloud = self._known()
-        if not len(cloud):
-            return REACH[name]
-        wanted = 0.2 * whole(cloud).radius * REACH[name]
-        power = 10.0 ** math.floor(math.log10(wanted))
-        return min(next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= wanted * 0.999), LONGEST)
-
-    def increment(self, name: str) -> float:
-        """As many steps for a file of any size."""
-        return self._reach(name) / 200.0 if name in REACH and self.dataset == "file" else super().increment(name)
-
-    def form(self) -> tuple[Any, ...]:
-        return *super().form(), self.last_step, self._known(), self.guess()
 
     def label(self, name: str) -> str:
         return WHAT_DISTANCE_IS[self.process] if name == "distance" else super().label(name)
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         """What `changed` does; no step is beyond the last, and a point that may be another is let go."""
-        now = self._with_step(self._exchanged(changes))
+        now = self._with_step(changes)
         turned = {name for name, value in now.items() if value != getattr(self, name)}
         if "file" in turned and now["file"]:
             now.setdefault("dataset", "file")
         if "file" in turned:
             now = {"columns": "", "units": "auto", **now}
-        if "step" in now:
-            now["step"] = min(now["step"], self.model_copy(update=now).last_step)
+        if "step" in now and now.get("process", self.process) != "register":
+            now["step"] = min(now["step"], LAST)
         if self.selected is not None and self._renumbers(turned):
             now.setdefault("selected", None)
         return super().moved(now)
-
-    def _exchanged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """A column that becomes what another one was gives that one its own role, so that no two are the same."""
-        before, now = self.entries("columns"), self._whole(changes)
-        columns = now.get("columns")
-        if columns is None or "columns" in changes:
-            return now
-        for old, new in zip(before, columns, strict=True):
-            if old != new and new != "-":
-                at = before.index(new) if new in before else -1
-                columns = "".join(old if k == at else letter for k, letter in enumerate(columns))
-        guessed = letters_of(self.guess().roles[:MOST_COLUMNS])
-        return {**now, "columns": "" if columns == guessed else columns}
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """A process begins at its result, a registration at its start."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -23,11 +22,11 @@ LEAST_GROUND = 0.2
 """Share of the points that must be on the ground before clusters are looked for without it."""
 LEAST_CLUSTER = 30
 MOST_STEPS = 40
+"""Of a registration."""
+LAST = 2
+"""Last step of every other process: nothing, found, done."""
 PAIRED = 12_000
 """Points of the second scan, about, that take part in a registration."""
-LENGTHS: dict[Hashable, int] = {}
-"""How many steps registrations had, by what they follow from; see `remember`."""
-MOST_LENGTHS = 1_000
 MESHED = 8_000
 """Points of a surface, about: an alpha shape takes its time."""
 
@@ -181,13 +180,6 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
     return Course(
         tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1]
     )
-
-
-def remember(key: Hashable, way: Course) -> None:
-    """Keep how many steps a registration has, longer than the registration: it bounds a slider."""
-    LENGTHS[key] = len(way.steps) - 1
-    if len(LENGTHS) > MOST_LENGTHS:
-        LENGTHS.pop(next(iter(LENGTHS)), None)
 
 
 def registered(cloud: Cloud, way: Course, number: int) -> Registered:

@@ -9,8 +9,9 @@ import numpy as np
 from sims.kit.readout import THIN, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import IGNORED, ROLES
-from sims.point_cloud.library import UPLOAD
-from sims.point_cloud.params import MOST_COLUMNS, OWN, CloudParams
+from sims.point_cloud.library import NO_FILES, Library
+from sims.point_cloud.offers import guess
+from sims.point_cloud.params import MOST_COLUMNS, OWN, UPLOAD, CloudParams
 from sims.point_cloud.processes import Registered
 from sims.point_cloud.solution import CloudSolution
 
@@ -72,9 +73,9 @@ def _taken(cloud: Cloud) -> str:
     return ", ".join(used) + (f"; not used: {', '.join(rest)}" if rest else "")
 
 
-def preview(p: CloudParams) -> Table | None:
+def preview(p: CloudParams, library: Library = NO_FILES) -> Table | None:
     """The first lines of a file, by its columns."""
-    cloud = p.guess()
+    cloud = guess(p, library)
     if not cloud.preview:
         return None
     lines = len(cloud.preview[0])

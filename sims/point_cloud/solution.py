@@ -11,12 +11,13 @@ from geometry import clouds, se3
 from geometry.arrays import Array
 from sims.kit.progress import begins
 from sims.kit.sim import DRAWN
-from sims.point_cloud import layers, library, processes
+from sims.point_cloud import layers, processes
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
 from sims.point_cloud.derived import LOCAL, colored_by, local, tally, thinned
 from sims.point_cloud.files import ply_bytes
 from sims.point_cloud.layers import NO_ARROWS, Drawn, Layer, layer
+from sims.point_cloud.library import NO_FILES, Library
 from sims.point_cloud.params import VIEWS, CloudParams
 from sims.point_cloud.processes import Clusters, Ground, Outliers, Registered, Surface
 
@@ -78,7 +79,7 @@ class CloudSolution:
 MOST_LABELS = 7
 
 
-def source(p: CloudParams) -> Cloud:
+def source(p: CloudParams, library: Library) -> Cloud:
     """The cloud of a state."""
     return library.find(p.file, p.choice) if p.dataset == "file" else dataset(p.dataset)
 
@@ -98,10 +99,10 @@ class Result:
     names: list[tuple[str, Array]] = field(default_factory=list)
 
 
-def solve(p: CloudParams) -> CloudSolution:
-    """All that is shown of a state."""
+def solve(p: CloudParams, library: Library = NO_FILES) -> CloudSolution:
+    """All that is shown of a state, on a server with those files."""
     begins("Fetching the cloud")
-    cloud = source(p)
+    cloud = source(p, library)
     thin = thinned(cloud, p.voxel_size)
     result = PROCESSES[p.process](p, cloud, thin)
     low, high = _extent(result)
@@ -182,13 +183,25 @@ def _outliers(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
 
 
 def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
-    way = processes.course(cloud, thin, p.method, p.facing, p.distance)
+    way = _course(p, cloud, thin)
     if way is None:
         return _none(p, cloud, thin)
-    processes.remember(p.course, way)
     first, second = (marked(cloud, thin, kind, mark, None) for kind, mark in (("first", "fixed"), ("second", "moves")))
     found = processes.registered(cloud, way, p.step)
     return Result(first, second, found.T, registration=found)
+
+
+def _course(p: CloudParams, cloud: Cloud, thin: Cloud) -> processes.Course | None:
+    return processes.course(cloud, thin, p.method, p.facing, p.distance)
+
+
+def last_step(p: CloudParams, library: Library) -> int:
+    """The last step of a state's process; how many a registration has must be worked out."""
+    if p.process != "register":
+        return processes.LAST
+    cloud = source(p, library)
+    way = _course(p, cloud, thinned(cloud, p.voxel_size))
+    return 0 if way is None else len(way.steps) - 1
 
 
 def _surface(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
@@ -251,9 +264,9 @@ def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array
     )  # fmt: skip
 
 
-def shown_points(p: CloudParams) -> Cloud:
+def shown_points(p: CloudParams, library: Library = NO_FILES) -> Cloud:
     """The points that a state shows, in the order of their numbers, where they are shown."""
-    cloud = source(p)
+    cloud = source(p, library)
     thin = thinned(cloud, p.voxel_size)
     result = PROCESSES[p.process](p, cloud, thin)
     kept = thin.only(np.concatenate([result.base.rows, result.marked.rows]))
@@ -269,8 +282,8 @@ def shown_points(p: CloudParams) -> Cloud:
     return kept.with_means(np.concatenate([kept.points[:first], moved]), kept.colors, kept.intensity, turned)
 
 
-def ply(p: CloudParams) -> bytes:
+def ply(p: CloudParams, library: Library = NO_FILES) -> bytes:
     """The shown points as a PLY file, where the file that they came from has them."""
-    kept = shown_points(p)
+    kept = shown_points(p, library)
     back = kept.points if kept.origin is None else kept.points + kept.origin
     return ply_bytes(kept.with_means(back, kept.colors, kept.intensity, kept.normals))

@@ -144,7 +144,7 @@ def new_target(p: ChainParams) -> dict[str, Any]:
     return {"target": next(away, places[0])}
 
 
-ACTIONS: tuple[Action[ChainParams], ...] = (
+ACTIONS: tuple[Action, ...] = (
     Action("add-link", "Add link", "One link more at the end, about y; the others stay as they are", add_link),
     Action("remove-link", "Remove link", "Takes the last link away; the others stay as they are", remove_link),
     Action("sweep", "Sweep joint", "A full turn of the joint whose trace is shown, or of the first", sweep),

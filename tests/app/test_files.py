@@ -7,8 +7,7 @@ import os
 import socket
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
-from dataclasses import replace
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +19,11 @@ from app import files
 from app.session import Session, new_key, room_of
 from sims import by_slug
 from sims.kit import child
-from sims.point_cloud import library
+from sims.point_cloud import SIM as POINT_CLOUD
+from sims.point_cloud import CloudParams, library, solve
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import ply_bytes, read
+from sims.point_cloud.library import GUESSED, Library
 from tests.app.conftest import Local
 from tests.server import PATIENCE, wait_for
 
@@ -56,7 +57,23 @@ def local(folder: Path) -> Iterator[Local]:
     """A server that takes files of 1 MB, and has a folder of its own."""
     with Local(max_upload=1, cloud_dir=folder) as local:
         yield local
-    library._folder.clear()
+
+
+def library_of(local: Local) -> Library:
+    """The server's clouds."""
+    (library,) = local.app.state.sessions.given(POINT_CLOUD)
+    assert isinstance(library, Library)
+    return library
+
+
+@contextmanager
+def with_folder(local: Local, folder: Path) -> Iterator[Library]:
+    """A server whose folder is looked through anew."""
+    library = Library(folder, 1_000_000)
+    before = dict(vars(library_of(local)))
+    vars(library_of(local)).update(vars(library))
+    yield library_of(local)
+    vars(library_of(local)).update(before)
 
 
 class Desk:
@@ -87,6 +104,10 @@ class Desk:
             self.session.change(changes)
 
         asyncio.run_coroutine_threadsafe(changed(), self.local._host.loop).result(PATIENCE)
+
+    @property
+    def offers(self) -> Any:
+        return self.session.sim.offers(self.params, self.session.solution, *self.session.given)
 
     def solution(self) -> Any:
         wait_for(lambda: self.session._drawing is None, "the drawing to end")
@@ -133,7 +154,7 @@ def test_a_bad_file_is_refused_in_words_and_changes_nothing(local: Local, name: 
     assert words in answer.json()["detail"]
     assert answer.json()["detail"][0].isupper()
     assert desk.params == before
-    assert desk.session.kept is None
+    assert not desk.session.uploaded
 
 
 @pytest.mark.parametrize(
@@ -151,10 +172,11 @@ def test_an_odd_file_is_shown_whatever_is_done_with_it(local: Local, name: str, 
     desk = Desk(local, "show_normals=1&color=variation")
     assert desk.bring(name, data).status_code == 200
     assert desk.solution().points_out == count
-    assert isinstance(desk.session.kept, library.Brought)
-    assert not set(desk.session.kept.name) & set("/\\")
+    (shown,) = [words for file, words in desk.offers.options("file").items() if file == desk.params.file]
+    assert shown.startswith("Yours: ")
+    assert not set(shown) & set("/\\")
     for process in ("ground", "clusters", "outliers", "register", "surface"):
-        solution = desk.session.sim.solve(desk.params.changed({"process": process, "selected": 0}))
+        solution = desk.session.sim.solve(desk.params.changed({"process": process, "selected": 0}), *desk.session.given)
         assert solution.points_in == count
 
 
@@ -198,14 +220,25 @@ def test_files_are_kept_as_long_as_their_session(local: Local) -> None:
     desk = Desk(local)
     assert desk.bring("mine.ply", FILE).status_code == 200
     name = desk.params.file
-    assert local.app.state.sessions.kept_bytes() >= len(FILE)
-    assert library.trouble(name) == ""
-    assert "gone" in library.trouble("upload-never-there")
+    assert local.app.state.sessions.uploaded_bytes() >= len(FILE)
+    assert library_of(local).trouble(name) == ""
+    assert "gone" in library_of(local).trouble("upload-never-there")
+    assert desk.bring("other.ply", FILE).status_code == 200
+    assert "gone" in library_of(local).trouble(name), "of two files the newer one is kept"
+    desk.session.left_at = -1e9
+    local.app.state.sessions.sweep()
+    assert "gone" in library_of(local).trouble(desk.params.file)
+
+
+def test_servers_in_one_process_have_files_of_their_own(local: Local) -> None:
+    assert library_of(local).trouble("church.xyz") == ""
+    assert "no file" in Library().trouble("church.xyz")
+    assert not solve(CloudParams(dataset="file", file="church.xyz")).points_in
 
 
 def test_the_server_keeps_no_more_than_it_can(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
     desk = Desk(local)
-    monkeypatch.setattr(local.app.state.sessions, "kept_bytes", lambda: 10_000_000)
+    monkeypatch.setattr(local.app.state.sessions, "uploaded_bytes", lambda: 10_000_000)
     answer = desk.bring("mine.ply", FILE)
     assert answer.status_code == 503
     assert desk.params.dataset == "room"
@@ -232,7 +265,7 @@ def test_slow_files_hold_up_nobody_and_are_given_up(local: Local, monkeypatch: p
 def test_the_administrators_folder_is_offered_by_name(local: Local) -> None:
     desk = Desk(local, "dataset=file&file=church.xyz")
     assert desk.solution().points_out == 4
-    assert set(desk.params.options("file")) == {None, "church.xyz", "broken.ply", *HOSTILE}
+    assert set(desk.offers.options("file")) == {None, "church.xyz", "broken.ply", *HOSTILE}
     broken = Desk(local, "dataset=file&file=broken.ply").solution()
     assert broken.points_out == 0
     assert "broken.ply" in broken.trouble
@@ -296,23 +329,22 @@ def test_what_a_child_failed_over_is_tried_again_after_a_while(
 ) -> None:
     """It may have been for want of memory; a refusal stays as it is."""
     (folder / "unlucky.xyz").write_text("1 2 3\n")
-    library.offer(folder, 1_000_000)
-    refused = reading_of(local, "broken.ply")["trouble"], library._readings["broken.ply", library.GUESSED]
-    with monkeypatch.context() as patch:
-        patch.setattr(library, "FIELDS", "tests.sims.strange_reader:errs")
-        assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"]
-    assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"], "for a while it isn't tried again"
-    monkeypatch.setattr(library, "AGAIN", 0.0)
-    assert reading_of(local, "unlucky.xyz")["points_in"] == 1
-    assert refused == (reading_of(local, "broken.ply")["trouble"], library._readings["broken.ply", library.GUESSED])
+    with with_folder(local, folder) as clouds:
+        refused = reading_of(local, "broken.ply")["trouble"], clouds._readings["broken.ply", GUESSED]
+        with monkeypatch.context() as patch:
+            patch.setattr(library, "FIELDS", "tests.sims.strange_reader:errs")
+            assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"]
+        assert "can't be read" in reading_of(local, "unlucky.xyz")["trouble"], "for a while it isn't tried again"
+        monkeypatch.setattr(library, "AGAIN", 0.0)
+        assert reading_of(local, "unlucky.xyz")["points_in"] == 1
+        assert refused == (reading_of(local, "broken.ply")["trouble"], clouds._readings["broken.ply", GUESSED])
     (folder / "unlucky.xyz").unlink()
-    library.offer(folder, 1_000_000)
 
 
 def test_columns_and_units_are_chosen_in_the_api_the_link_and_the_controls(local: Local) -> None:
     desk = Desk(local)
     assert desk.bring("mine.xyz", b"1 2 3 9\n4 5 6 9\n7 8 1 9\n").status_code == 200
-    assert desk.params.entries("columns") == "xyzi"
+    assert desk.offers.entries("columns") == "xyzi"
     desk.change({"columns.0": "z"})
     desk.change({"columns.3": "-"})
     assert desk.params.columns == "zyx-", "the column that was z became x"
@@ -325,7 +357,7 @@ def test_columns_and_units_are_chosen_in_the_api_the_link_and_the_controls(local
     np.testing.assert_allclose(desk.solution().maximum, np.array([6.0, 8.0, 7.0]) * 0.3048, atol=1e-6)
     desk.change({"columns.0": "-"})
     assert "no coordinate z" in desk.solution().trouble
-    assert desk.params.entries("columns") == "-yx-", "it can be mended"
+    assert desk.offers.entries("columns") == "-yx-", "it can be mended"
     desk.change({"columns": "", "units": "auto"})
     assert desk.solution().points_in == 3
 
@@ -337,27 +369,26 @@ def test_columns_and_units_are_chosen_in_the_api_the_link_and_the_controls(local
     np.testing.assert_allclose(linked.solution().maximum, [0.008, 0.007, 0.006], atol=1e-8)
 
 
-def test_the_clouds_of_the_folder_that_nobody_looks_at_are_few(local: Local, folder: Path) -> None:
+def test_the_clouds_of_the_folder_that_nobody_looks_at_are_few(folder: Path) -> None:
     names = [f"many {number}.xyz" for number in range(library.KEPT + 3)]
     for name in names:
         (folder / name).write_text("0 0 0\n1 2 3\n")
-    library.offer(folder, 1_000_000)
-    first = library.find(names[0])
-    assert library.find(names[0]) is first, "every state has the same cloud"
+    clouds = Library(folder, 1_000_000)
+    first = clouds.find(names[0])
+    assert clouds.find(names[0]) is first, "every state has the same cloud"
     for name in names:
-        assert len(library.find(name)) == 2
-    assert len(library._readings) <= library.KEPT + 1
+        assert len(clouds.find(name)) == 2
+    assert len(clouds._readings) <= library.KEPT + 1
     for name in names:
         (folder / name).unlink()
-    library.offer(folder, 1_000_000)
 
 
 @pytest.mark.parametrize("name", ["../secret.xyz", "..", "inside/x.xyz", "/etc/passwd", "..\\secret.xyz"])
 def test_no_name_leads_out_of_the_folder(local: Local, name: str) -> None:
     answer = local.http.get("/sims/point-cloud/embed", params={"dataset": "file", "file": name})
     assert answer.status_code in (200, 422)
-    assert not len(library.find(name))
-    assert "secret" not in library.offered(name).values()
+    assert not len(library_of(local).find(name))
+    assert "secret" not in library_of(local).offered(name).values()
 
 
 def test_reading_doesnt_hold_up_the_loop(local: Local) -> None:
@@ -384,16 +415,19 @@ def test_reading_doesnt_hold_up_the_loop(local: Local) -> None:
 def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) -> None:
     desk = Desk(local)
     begun, go_on = threading.Event(), threading.Event()
-    known = desk.session.sim.files
-    assert known is not None
-    make = known.read
+    clouds = library_of(local)
+    before = set(clouds._uploads)
 
-    def read_slowly(name: str, data: bytes, largest: int) -> tuple[object, Any]:
-        begun.set()
-        assert go_on.wait(20)
-        return make(name, data, largest)
+    class Slow(Library):
+        def add(self, name: str, data: bytes) -> tuple[str, Mapping[str, Any]]:
+            begun.set()
+            assert go_on.wait(20)
+            return clouds.add(name, data)
 
-    desk.session.sim = replace(desk.session.sim, files=replace(known, read=read_slowly))
+        def remove(self, known_as: str) -> None:
+            clouds.remove(known_as)
+
+    desk.session.library = Slow()
     with socket.create_connection(("127.0.0.1", httpx.URL(local.url).port)) as page:
         head = f"POST {desk.path}file?name=mine.ply HTTP/1.1\r\nhost: x\r\ncontent-length: {len(FILE)}\r\n\r\n"
         page.sendall(head.encode() + FILE)
@@ -403,4 +437,5 @@ def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) 
     local.app.state.sessions.aside.submit(lambda: None).result()
     assert local.http.get("/healthz").status_code == 200
     assert desk.params.dataset == "room"
-    assert desk.session.kept is None
+    wait_for(lambda: set(clouds._uploads) == before, "the file to be forgotten")
+    assert not desk.session.uploaded

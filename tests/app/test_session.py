@@ -9,7 +9,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Annotated, Any
@@ -92,7 +92,9 @@ class Room:
             await asyncio.wait([drawing])
 
     async def moved(self) -> None:
-        """Wait until the motion has ended."""
+        """Wait until the motion has ended, and before that until it is known which it is."""
+        while (seeking := self.session._seeking) is not None:
+            await asyncio.wait([seeking])
         while (moving := self.session._motion) is not None:
             await asyncio.wait([moving])
 
@@ -443,8 +445,10 @@ def test_an_even_leg_keeps_one_speed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(motion, "asyncio", clock)
 
     async def sizes(even: bool) -> list[float]:
-        leg = iter([Step({"size": 100.0}, 1.0, even=even)])
-        return [changes["size"] async for changes in motion.play(leg, ToyParams, reduced=False)]
+        async def leg() -> AsyncIterator[Step]:
+            yield Step({"size": 100.0}, 1.0, even=even)
+
+        return [changes["size"] async for changes in motion.play(leg(), ToyParams, reduced=False)]
 
     start = ToyParams().size
     speeds = np.diff([start, *asyncio.run(sizes(even=True))[1:-1]])
@@ -998,7 +1002,7 @@ def test_work_ahead_is_done_once_after_the_first_drawing() -> None:
         assert len(done) == 2
         assert done[0] > 0
         assert done[1] > 10
-        sessions.close()
+        await sessions.close()
 
     run(test)
 
@@ -1034,7 +1038,7 @@ def test_nobody_waits_for_those_who_take_long() -> None:
         while not solver.solved or other.solution is None:
             await asyncio.sleep(0.02)
         assert time.monotonic() - begun < 4.0
-        sessions.close()
+        await sessions.close()
 
     asyncio.run(asyncio.wait_for(test(), 20))
 
@@ -1061,6 +1065,6 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
         while room._drawing is not None or room._seeking is not None:
             await asyncio.sleep(0.05)
         assert most == 1
-        sessions.close()
+        await sessions.close()
 
     asyncio.run(asyncio.wait_for(test(), 20))

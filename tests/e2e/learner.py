@@ -28,6 +28,7 @@ from playwright.sync_api import (
 
 from sims import by_slug
 from sims.kit.controls import worded
+from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.readout import figure
 from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
@@ -208,7 +209,7 @@ class Learner:
 
     def label(self, name: str) -> str:
         """What stands beside the control of a parameter now."""
-        return worded(self.state, name)
+        return worded(Offers(self.state), name)
 
     def solved(self) -> dict[str, Any]:
         """What the API answers for the present state."""

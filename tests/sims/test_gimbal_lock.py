@@ -353,7 +353,7 @@ def test_same_orientation_by_other_angles_is_said() -> None:
 # ---- buttons
 
 
-def action(name: str) -> Action[GimbalParams]:
+def action(name: str) -> Action:
     return next(a for a in SIM.actions if a.name == name)
 
 

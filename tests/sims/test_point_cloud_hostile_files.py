@@ -13,6 +13,7 @@ import pytest
 from sims.kit.child import ChildFailed, ChildRefusal, Limits
 from sims.point_cloud import library
 from sims.point_cloud.cloud import Cloud
+from sims.point_cloud.library import Library
 from tests.sims.test_point_cloud_files import FILES, LARGEST, POINTS
 
 EACH, OF_LAZ = 155, 50
@@ -88,9 +89,9 @@ def broken_files() -> list[tuple[str, bytes]]:
 
 
 def brought(name: str, data: bytes) -> Cloud:
-    kept, changes = library.bring(name, data, LARGEST)
-    assert isinstance(kept, library.Brought)
-    return library.find(changes["file"])
+    clouds = Library(largest=LARGEST)
+    known_as, _ = clouds.add(name, data)
+    return clouds.find(known_as)
 
 
 def outcome(file: tuple[str, bytes]) -> str:

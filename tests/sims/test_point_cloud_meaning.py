@@ -13,6 +13,8 @@ from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.derived import local, thinned
 from sims.point_cloud.files import CloudFileError, read
 from sims.point_cloud.files.meaning import letters_of, roles_of
+from sims.point_cloud.library import Library
+from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.params import CloudParams
 
 LARGEST = 60_000_000
@@ -288,15 +290,16 @@ def test_points_too_many_are_chosen_at_random_to_the_limit() -> None:
     np.testing.assert_array_equal(fewer.points, read("a.ply", data, LARGEST, most=1_000).points)
 
 
-def test_lengths_of_a_file_follow_its_size(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lengths_of_a_file_follow_its_size() -> None:
     for size, greatest in ((0.1, 0.02), (5.0, 1.0), (2_000.0, 500.0)):
         cloud = Cloud("", np.array([[0.0, 0.0, 0.0], [size, size, size]]))
-        monkeypatch.setattr("sims.point_cloud.library.known", lambda *_, cloud=cloud: cloud)
-        params = CloudParams(dataset="file", file="some.xyz")
-        low, high = params.bounds("voxel_size")
+        library = Library()
+        library.known = lambda *_, cloud=cloud: cloud  # type: ignore[method-assign]
+        offers = CloudOffers(CloudParams(dataset="file", file="some.xyz"), None, library)
+        low, high = offers.bounds("voxel_size")
         assert low == 0.0
         assert high == pytest.approx(greatest)
-        assert params.increment("voxel_size") == pytest.approx(greatest / 200.0)
+        assert offers.increment("voxel_size") == pytest.approx(greatest / 200.0)
     assert CloudParams().bounds("voxel_size") == (0.0, 1.0)
     with pytest.raises(ValueError, match="from 0 to 1"):
         CloudParams(voxel_size=1.5)

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 from sims.kit import readout
-from sims.point_cloud import SIM, CloudParams, library
+from sims.point_cloud import SIM, CloudParams
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import CloudFileError, read
+from sims.point_cloud.library import Library
+from sims.point_cloud.offers import CloudOffers
 from tests.sims.markup import words
 
 LARGEST = 100_000_000
@@ -79,9 +81,9 @@ def test_what_is_not_sure_is_refused_in_words(text: str, said: str) -> None:
         cloud_of(text)
 
 
-def normal_of(p: CloudParams) -> np.ndarray[Any, np.dtype[np.float64]]:
+def normal_of(p: CloudParams, library: Library) -> np.ndarray[Any, np.dtype[np.float64]]:
     """The normal of the selected point."""
-    selected = SIM.solve(p).selected
+    selected = SIM.solve(p, library).selected
     assert selected is not None
     assert selected.normal is not None
     return np.asarray(selected.normal)
@@ -95,35 +97,35 @@ def test_a_viewpoint_is_where_normals_point_and_none_is_not_spoken_of() -> None:
         ("", None),
     ):
         text = PCD.format(rest=f"POINTS 25\n{viewpoint}", rows=rows)
-        kept, changes = library.bring("a.pcd", text.encode(), LARGEST)
+        library = Library(largest=LARGEST)
+        _, changes = library.add("a.pcd", text.encode())
         p = CloudParams.model_validate({**changes, "selected": 12})
-        s = SIM.solve(p)
+        s = SIM.solve(p, library)
         assert (s.drawn.cloud.sensor is None) == (sensor is None)
-        assert normal_of(p)[2] == pytest.approx(-1.0 if sensor else 1.0)
+        assert normal_of(p, library)[2] == pytest.approx(-1.0 if sensor else 1.0)
         said = words(readout.render(SIM.readouts(p, s)))
         assert ("towards the sensor" in said) == (sensor is not None)
-        del kept
 
 
 def test_a_learner_sees_what_was_taken_for_what_and_changes_it() -> None:
-    kept, changes = library.bring("a.csv", b"1,2,3,10,20,30\n4,5,6,40,50,60\n", LARGEST)
+    library = Library(largest=LARGEST)
+    _, changes = library.add("a.csv", b"1,2,3,10,20,30\n4,5,6,40,50,60\n")
     p = CloudParams().moved(changes)
-    s = SIM.solve(p)
+    s = SIM.solve(p, library)
     said = words(readout.render(SIM.readouts(p, s)))
     for part in ("Columns taken for", "Taken as metres"):
         assert part in said
-    assert p.entries("columns") == "xyzrgb"
+    assert CloudOffers(p, s, library).entries("columns") == "xyzrgb"
     assert p.columns == "", "as it seems needs no place in a link"
-    p = p.moved({"columns.0": "z"})
+    p = CloudOffers(p, s, library).moved({"columns.0": "z"})
     assert p.columns == "zyxrgb", "the two change places"
-    np.testing.assert_array_equal(SIM.solve(p).maximum, [6.0, 5.0, 4.0])
+    np.testing.assert_array_equal(SIM.solve(p, library).maximum, [6.0, 5.0, 4.0])
     p = p.moved({"units": "millimetres"})
-    np.testing.assert_allclose(SIM.solve(p).maximum, [0.006, 0.005, 0.004])
+    np.testing.assert_allclose(SIM.solve(p, library).maximum, [0.006, 0.005, 0.004])
     assert CloudParams.from_query(p.query_items().items()) == p
-    bad = p.moved({"columns.0": "-"})
-    assert "no coordinate" in SIM.solve(bad).trouble
+    bad = CloudOffers(p, s, library).moved({"columns.0": "-"})
+    assert "no coordinate" in SIM.solve(bad, library).trouble
     assert p.moved({"file": None}).columns == ""
-    del kept
 
 
 def test_coordinates_that_are_nothing_beside_the_clouds_size_are_zero() -> None:

@@ -299,11 +299,11 @@ each_number = each(
 )
 
 
-def shown(params: Params, name: str) -> Any:
+def shown(sim: AnySim, params: Params, name: str) -> Any:
     """What the control of a parameter should show."""
     value = getattr(params, name)
     if isinstance(params.kinds[name], DROPDOWNS):
-        return params.options(name)[value]
+        return sim.offers(params).options(name)[value]
     if value is None:
         return params.bounds(name)[0] - params.numeric[name].step
     return list(value) if isinstance(value, tuple) else value
@@ -317,7 +317,7 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
     start = getattr(rig.session.params, name)
     aims: list[Any]
     if isinstance(kind, DROPDOWNS):
-        aims = [*(value for value in rig.session.params.options(name) if value != start), start]
+        aims = [*(value for value in sim.offers(rig.session.params).options(name) if value != start), start]
     elif isinstance(kind, Switch):
         aims = [not start]
     else:
@@ -327,7 +327,7 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         if isinstance(kind, Vector):
             aims = list(zip(*((low, high, high - step) for low, high in kind.each), strict=True))
     for aim in aims:
-        wanted = shown(rig.session.params.model_copy(update={name: aim}), name)
+        wanted = shown(sim, rig.session.params.model_copy(update={name: aim}), name)
         rig.browser.move(name, wanted)
         rig.settle()
         assert getattr(rig.session.params, name) == pytest.approx(aim)
@@ -350,7 +350,7 @@ def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim:
         if isinstance(kind, Vector):
             least, greatest = zip(*kind.each, strict=True)
             wanted = list(least if beyond < low else greatest)
-        assert shown(rig.session.params, name) == wanted
+        assert shown(sim, rig.session.params, name) == wanted
         assert rig.browser.control(name).value == pytest.approx(wanted)
 
 
@@ -361,9 +361,9 @@ def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnyS
         rig.show(params)
         for name in [n for s, n in field_cases() if s is sim]:
             control = rig.browser.control(name)
-            assert control.value == pytest.approx(shown(params, name)), name
+            assert control.value == pytest.approx(shown(sim, params, name)), name
             if control.kind == "GuiSliderMessage":
-                assert control.bounds == params.bounds(name)
+                assert control.bounds == sim.offers(params, rig.session.solution).bounds(name)
 
 
 @each_list
@@ -374,7 +374,7 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
     labels: Any = kind.labels if isinstance(kind, Letters) else None
     for params in [p for s, _, p in FEW if s is sim]:
         rig.show(params)
-        model, start = rig.browser.model, params.entries(name)
+        model, start = rig.browser.model, getattr(params, name)
         for k in range(kind.most):
             control = model.control(params.entry_label(name, k))
             assert control.props.get("visible", True) == (k < len(start))
