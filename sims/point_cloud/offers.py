@@ -38,13 +38,13 @@ class CloudOffers(Offers[CloudParams]):
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step" and self._last is not None:
             return 0, max(self._last, self.params.step, 1)
-        if name in REACH and self._file:
+        if name in REACH and self.params.dataset == "file":
             return 0.0, max(self._reach(name), getattr(self.params, name))
         return super().bounds(name)
 
     def increment(self, name: str) -> float:
         """As many steps for a file of any size."""
-        return self._reach(name) / 200.0 if name in REACH and self._file else super().increment(name)
+        return self._reach(name) / 200.0 if name in REACH and self.params.dataset == "file" else super().increment(name)
 
     def _reach(self, name: str) -> float:
         """The greatest length that a slider offers: a round one, about a tenth of the cloud's size."""
