@@ -11,8 +11,8 @@ import threading
 
 import uvicorn
 
-from app.protocol import LARGEST, Websocket
 from app.settings import Settings, load
+from app.sockets.protocol import LARGEST, Websocket
 from app.web import create_app
 from sims.kit.viser_internals import ViserHost
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any
 
-from starlette.routing import BaseRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
@@ -30,14 +29,14 @@ class Prefix:
     """Puts the prefix before every path, whether or not the proxy took it away: as ASGI has it, the path is whole.
 
     The prefix is a setting, and not taken from X-Forwarded-Prefix: not every proxy says it, and which one a page is
-    asked through shouldn't decide where its links lead. A path that goes on after the prefix with one of the
-    application's own addresses has it already; so the prefix may be called like one of these, as in /sims.
+    asked through shouldn't decide where its links lead. A path that goes on after the prefix with what one of the
+    application's own addresses begins with has it already; so the prefix may be called like one of these, as in /sims.
     """
 
-    def __init__(self, app: ASGIApp, prefix: str, routes: Sequence[BaseRoute]) -> None:
+    def __init__(self, app: ASGIApp, prefix: str, addresses: Iterable[str]) -> None:
         self._app = app
         self._prefix = prefix
-        self._own = {str(getattr(route, "path", "")).split("/")[1] for route in routes}
+        self._own = {address.split("/")[1] for address in addresses}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "lifespan" and self._prefix:

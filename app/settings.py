@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from app import origins
+from app.sockets import origins
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -33,9 +33,9 @@ from urllib.request import ProxyHandler, build_opener
 
 import viser
 
-from app.commands import Commands
-from app.messages import GuiUpdateMessage, decoder
-from app.session import Sessions
+from app.rooms.registry import Sessions
+from app.sockets.commands import Commands
+from app.sockets.viser_messages import GuiUpdateMessage, decoder
 from sims.kit.params import Params
 from sims.kit.sim import Sim
 from sims.kit.viewer import Look, Viewer
@@ -227,12 +227,7 @@ class Browser:
 
     def _show(self, look: Look) -> Viewer:
         session = self._session
-
-        def tell(message: dict[str, Any]) -> None:
-            for listener in list(session.listeners):
-                listener(message)
-
-        commands = Commands(session, tell)
+        commands = Commands(session, session.telling.tell)
         viewer = Viewer(session.sim, self.client, commands, look, session.params, session.given)
         session.join(viewer)
         return viewer
@@ -365,10 +360,7 @@ class Rig:
     async def _drawn(self) -> None:
         for _ in range(20):  # turns of the loop: what browsers sent goes through viser's tasks first
             await asyncio.sleep(0)
-        if (seeking := self.session._seeking) is not None:
-            await asyncio.wait([seeking], timeout=PATIENCE)
-        while (drawing := self.session._drawing) is not None:
-            await asyncio.wait([drawing], timeout=PATIENCE)
+        await asyncio.wait_for(self.session.settled(), PATIENCE)
 
     def close(self) -> None:
         """Everybody leaves."""

@@ -38,8 +38,8 @@ class CameraScene:
             spot.pose(position=place)
             stage.link(spot, name)
         self.selected = stage.ball("/selected", 1.5 * SPOT, "held")
-        self.lit = stage.ball("/lit", 1.4 * SPOT, "held")
-        self.lit.show(False)
+        self.highlighted = stage.ball("/lit", 1.4 * SPOT, "held")
+        self.highlighted.show(False)
         self.selected_label = stage.label("/selected/label", "", (0.0, 0.0, ABOVE))
         self.labels = {
             point: stage.label(f"/names/{point}", words, above(PLACES[point])) for words, point in NAMED.items()
@@ -64,9 +64,9 @@ class CameraScene:
         for hint in self.hints:
             hint.show(p.show_labels)
 
-    def point(self, name: str) -> None:
-        """Light up the point that somebody points at in the picture or the table, or none."""
-        self.lit.place(PLACES.get(name))
+    def highlight(self, name: str) -> None:
+        """Highlight the point that somebody hovers over in the picture or the table, or none."""
+        self.highlighted.place(PLACES.get(name))
 
 
 def above(place: Place) -> Place:

@@ -46,7 +46,7 @@ class EpipolarScene:
         self.pick_ray = stage.lines("/pick_ray", "held", width=3.0)
         self.selected = Mark(stage, "/selected", width=1.8)
         self.selected_label = stage.label("/selected/ball/label", "", (0.0, 0.0, 0.22))
-        self.lit = Mark(stage, "/lit", width=3.5)
+        self.highlighted = Mark(stage, "/lit", width=3.5)
         self.warning = stage.label("/warning", "")
         self.places: dict[str, Place] = {}
         self.centers: Segment = (ORIGIN, ORIGIN)
@@ -85,13 +85,13 @@ class EpipolarScene:
         self.selected.draw(self.places.get(f"{p.selected}") if p.selected > 1 else None, self.centers)
         self.selected_label.text(f"point {p.selected}")
 
-    def point(self, name: str) -> None:
-        """Light up the point that somebody points at in a picture or the table, or none."""
-        self.lit.draw(self.places.get(name), self.centers)
+    def highlight(self, name: str) -> None:
+        """Highlight the point that somebody hovers over in a picture or the table, or none."""
+        self.highlighted.draw(self.places.get(name), self.centers)
 
 
 class Mark:
-    """A point that is selected or lit: a ball in its place, and its lines of sight from both centres."""
+    """A point that is selected or highlighted: a ball in its place, and its lines of sight from both centres."""
 
     def __init__(self, stage: Stage, path: str, width: float) -> None:
         self.node = stage.group(path)

@@ -27,8 +27,8 @@ S_in = TypeVar("S_in", contravariant=True)
 class Scene(Protocol[P_in, S_in]):
     """Viser nodes, built once for one viewer; `draw` assigns what follows from the state.
 
-    One whose things are linked with pictures and tables also has `point(name)`: it lights up what somebody points at,
-    or nothing for a name that it doesn't know. It is told again after each `draw`.
+    One whose things are linked with pictures and tables also has `highlight(name)`: it highlights what somebody hovers
+    over, or nothing for a name that it doesn't know. It is told again after each `draw`.
     """
 
     def __init__(self, stage: Stage) -> None: ...
@@ -148,7 +148,9 @@ class Sim(Generic[P, S]):
     offers: Callable[..., Offers[P]] = Offers
     """What the controls offer, of parameters and the last solution (None before there is one)."""
     handles: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
-    """What dragging a node or a mark in a picture, or clicking a node, changes: of parameters and place."""
+    """What dragging a node or a mark in a picture changes: of parameters and the place, in metres or pixels."""
+    clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
+    """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
     typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None

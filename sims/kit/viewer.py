@@ -46,6 +46,8 @@ class Host(Protocol):
 
     def drag(self, name: str, place: tuple[float, ...]) -> None: ...
 
+    def click(self, name: str, ray: tuple[float, ...]) -> None: ...
+
 
 @dataclass(frozen=True)
 class Look:
@@ -117,11 +119,10 @@ class Viewer:
         if look.controls:
             self._readouts = self._add_readouts()
         width = look.width - self._docked()
-        self._stage = Stage(client, self.palette, self._dragged, self._picked, self._pointed, width, look.phone)
+        self._stage = Stage(client, self.palette, self._dragged, self._picked, self._clicked, width, look.phone)
         self.scene = sim.scene(self._stage)
-        light = getattr(self.scene, "point", None)
-        self._light: Callable[[str], None] | None = light if callable(light) else None  # it may be a node of that name
-        self._lit = ""
+        self._highlight: Callable[[str], None] | None = getattr(self.scene, "highlight", None)
+        self._highlighted = ""
         self._live = False
 
     def input(self, control: str, value: Any) -> bool:
@@ -137,8 +138,8 @@ class Viewer:
         """Show a state; only what differs is sent, in one window."""
         with self.client.atomic():
             self.scene.draw(params, solution)
-            if self._light is not None and self._lit:
-                self._light(self._lit)
+            if self._highlight is not None and self._highlighted:
+                self._highlight(self._highlighted)
             if not self._live:
                 self._live = True
                 self.client.gui.add_html("<span hidden data-s3-drawn></span>")  # in the same window
@@ -180,12 +181,12 @@ class Viewer:
         self.client.camera.look_at = target
         self.client.flush()
 
-    def point(self, name: str) -> None:
-        """Light up what somebody points at elsewhere, in scenes that know how; an empty name is nothing."""
-        self._lit = name
-        if self._light is not None and self._live:
+    def highlight(self, name: str) -> None:
+        """Highlight what somebody hovers over elsewhere, in scenes that know how; an empty name is nothing."""
+        self._highlighted = name
+        if self._highlight is not None and self._live:
             with self.client.atomic():
-                self._light(name)
+                self._highlight(name)
             self.client.flush()
 
     def _regions(self, offers: Offers[Any]) -> str:
@@ -280,9 +281,9 @@ class Viewer:
         if not self.look.watching:
             self._host.select(name)
 
-    def _pointed(self, name: str, ray: tuple[float, ...]) -> None:
+    def _clicked(self, name: str, ray: tuple[float, ...]) -> None:
         if not self.look.watching:
-            self._host.drag(name, ray)
+            self._host.click(name, ray)
 
     def _dragged(self, name: str, place: Place) -> None:
         if not self.look.watching:

@@ -41,7 +41,7 @@ SIM = Sim(
         Action("play", "Play", "The process from its start; without one, growing voxels", actions.play),
         Action("step", "Next step", "The process one step on; from the last one back to its start", actions.next_step),
     ),
-    handles={"/cloud": actions.pick},
+    clicks={"/cloud": actions.pick},
     states={
         "street": {"dataset": "street", "color": "intensity"},
         "street without colours": {"dataset": "street"},

@@ -44,8 +44,8 @@ class TriangulationScene:
         self.true_label = stage.label("/point/label", "true point", (0.0, 0.0, 0.1), anchor="bottom-right")
         self.region = Region(stage, "/uncertainty", 0.004, opacity=0.45)
         self.closeup = CloseUp(stage)
-        self.lit = stage.ball("/point/lit", 1.3 * RADIUS, "held")
-        self.lit.show(False)
+        self.highlighted = stage.ball("/point/lit", 1.3 * RADIUS, "held")
+        self.highlighted.show(False)
         self.warning = stage.label("/warning", "")
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
@@ -65,14 +65,14 @@ class TriangulationScene:
         self._in_words(p, s, at, self.closeup.draw(p, s))
         self._warn(s)
 
-    def point(self, name: str) -> None:
-        """Light up what somebody points at: an image point's ray, the point of a method, or the true point."""
+    def highlight(self, name: str) -> None:
+        """Highlight what somebody hovers over: an image point's ray, the point of a method, or the true point."""
         for camera in self.cameras:
-            camera.light(name)
+            camera.highlight(name)
         for method, shape in self.points.items():
-            shape.lit.show(method == name)
-        self.lit.show(name == "true")
-        self.closeup.point(name)
+            shape.highlighted.show(method == name)
+        self.highlighted.show(name == "true")
+        self.closeup.highlight(name)
 
     def _held(self, s: TriangulationSolution) -> None:
         self.grip.place(None if s.target is None else s.target.tolist())
@@ -116,8 +116,8 @@ class CameraInScene:
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
         self.ray = stage.lines(f"{path}/ray", name, width=1.8)
         self.back = stage.lines(f"{path}/back", name, width=1.5, dash=(0.08, 0.08))
-        self.lit = stage.lines(f"{path}/lit", name, width=6.0)
-        self.lit.show(False)
+        self.highlighted = stage.lines(f"{path}/lit", name, width=6.0)
+        self.highlighted.show(False)
         self.end = ORIGIN
 
     def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
@@ -135,6 +135,6 @@ class CameraInScene:
             back = max(0.0 if s.closest_points is None else s.closest_points.item(0, 1), -BACKWARD)
             self.back.path([ORIGIN, (x * back, y * back, back)])
 
-    def light(self, name: str) -> None:
+    def highlight(self, name: str) -> None:
         """Make the ray thick if it has that name."""
-        self.lit.stroke((ORIGIN, self.end) if name == self.name else None)
+        self.highlighted.stroke((ORIGIN, self.end) if name == self.name else None)

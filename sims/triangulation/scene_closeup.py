@@ -36,8 +36,8 @@ class CloseUp:
         self.shapes = {name: Shape(stage, f"/closeup/{name}", name) for name in METHODS}
         self.names = {name: stage.label(f"/closeup/{name}/label", NAMES[name]) for name in METHODS}
         self.true = stage.ball("/closeup/true", 1.0, "held")
-        self.lit = stage.ball("/closeup/true/lit", 1.0, "held")
-        self.lit.show(False)
+        self.highlighted = stage.ball("/closeup/true/lit", 1.0, "held")
+        self.highlighted.show(False)
         self.region = Region(stage, "/closeup/uncertainty", 0.009, opacity=0.3)
         self.label = stage.label("/closeup/label", "")
         self.gap_label = stage.label("/closeup/gap_label", "")
@@ -71,16 +71,16 @@ class CloseUp:
         self.gap_label.text(gap_in_words(s))
         return True
 
-    def point(self, name: str) -> None:
-        """Light up the point of a method, the true point, or nothing."""
+    def highlight(self, name: str) -> None:
+        """Highlight the point of a method, the true point, or nothing."""
         for method, shape in self.shapes.items():
-            shape.lit.show(method == name)
-        self.lit.show(name == "true")
+            shape.highlighted.show(method == name)
+        self.highlighted.show(name == "true")
 
     def _resize(self, radius: float, height: float) -> None:
         self.glass.scale(radius)
         self.true.scale(0.8 * DOT * radius)
-        self.lit.scale(1.4 * DOT * radius)
+        self.highlighted.scale(1.4 * DOT * radius)
         self.string.stroke(((0.0, 0.0, -radius), (0.0, 0.0, -height)))
         self.label.pose(position=(0.0, 0.0, 1.15 * radius))
         self.gap_label.pose(position=(0.0, 0.0, -1.15 * radius))

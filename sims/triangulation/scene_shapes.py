@@ -34,9 +34,9 @@ class Shape:
         self.node = stage.group(path)
         self.filled = stage.mesh(f"{path}/filled", BODIES[name], "ink", flat=name != "optimal")
         self.ghost = stage.mesh(f"{path}/ghost", BODIES[name], "ghost", flat=name != "optimal")
-        self.lit = stage.mesh(f"{path}/lit", BODIES[name], "held", flat=name != "optimal")
-        self.lit.show(False)
-        for body in (self.filled, self.ghost, self.lit):
+        self.highlighted = stage.mesh(f"{path}/lit", BODIES[name], "held", flat=name != "optimal")
+        self.highlighted.show(False)
+        for body in (self.filled, self.ghost, self.highlighted):
             stage.link(body, name)
 
     def draw(self, place: Sequence[float] | None, chosen: bool, size: float) -> None:
@@ -49,4 +49,4 @@ class Shape:
         self.ghost.show(not chosen)
         self.filled.scale(size)
         self.ghost.scale(0.6 * size)
-        self.lit.scale(1.3 * size)
+        self.highlighted.scale(1.3 * size)

@@ -13,8 +13,9 @@ import httpx
 import pytest
 import uvicorn
 
-from app import session
 from app.__main__ import config
+from app.rooms import telling
+from app.routes.services import Services
 from app.settings import Settings
 from sims.kit.viser_internals import ViserHost
 from tests.server import PATIENCE, wait_for
@@ -41,15 +42,20 @@ class Local:
         self.http = httpx.Client(base_url=self.url, trust_env=False, timeout=PATIENCE)
 
     @property
+    def services(self) -> Services:
+        """What the server's routes work with."""
+        services: Services = self.app.state.services
+        return services
+
+    @property
     def refusals(self) -> Counter[str]:
         """What the bridge refused so far, by reason."""
-        counter: Counter[str] = self.app.state.bridge.refusals
-        return Counter(counter)
+        return Counter(self.services.bridge.refusals)
 
     @property
     def sessions(self) -> int:
         """How many rooms are open."""
-        return len(self.app.state.sessions)
+        return len(self.services.sessions)
 
     def refused(self, why: str, more_than: int = 0) -> None:
         """Wait until the bridge has refused something for a reason more often than so many times."""
@@ -92,7 +98,7 @@ def local() -> Iterator[Local]:
     It tells each state at once: most of a test's time would else be the wait between two.
     """
     with pytest.MonkeyPatch.context() as patch, Local() as local:
-        patch.setattr(session, "STATE_INTERVAL", 0.0)
+        patch.setattr(telling, "STATE_INTERVAL", 0.0)
         yield local
 
 

@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 from websockets.typing import Origin, Subprotocol
 
-from app.session import new_key, room_of
+from app.rooms.keys import new_key, room_of
 from sims.kit.viser_internals import PROTOCOL
 from tests.frames import SceneModel, encode_message
 from tests.server import PATIENCE, camera_message

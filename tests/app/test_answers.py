@@ -12,8 +12,8 @@ from typing import Any
 import httpx
 import pytest
 
-from app import answers
-from app.answers import Answers, Busy, Gone
+from app.routes import answers
+from app.routes.answers import Answers, Busy, Gone
 from sims.kit.progress import Superseded, goes_on
 from tests.app.conftest import Local
 from tests.server import PATIENCE, wait_for
@@ -169,7 +169,7 @@ def busy(local: Local, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[],
 
 @contextmanager
 def held(local: Local, gate: Gate, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    made: Answers = local.app.state.answers
+    made: Answers = local.services.answers
     find = made.find
     monkeypatch.setattr(made, "find", lambda address, _, gone: find(address, gate.work(address), gone))
     yield

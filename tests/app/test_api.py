@@ -10,7 +10,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app import api
+from app.routes import api
 from sims import SIMS
 from sims.kit.fields import Switch
 from sims.kit.refusals import BadParams

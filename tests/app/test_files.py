@@ -15,8 +15,9 @@ import httpx
 import numpy as np
 import pytest
 
-from app import files
-from app.session import Session, new_key, room_of
+from app.rooms.keys import new_key, room_of
+from app.rooms.session import Session
+from app.routes import coming
 from sims import by_slug
 from sims.kit import child
 from sims.point_cloud import SIM as POINT_CLOUD
@@ -61,7 +62,7 @@ def local(folder: Path) -> Iterator[Local]:
 
 def library_of(local: Local) -> Library:
     """The server's clouds."""
-    (library,) = local.app.state.sessions.given(POINT_CLOUD)
+    (library,) = local.services.sessions.given(POINT_CLOUD)
     assert isinstance(library, Library)
     return library
 
@@ -86,7 +87,7 @@ class Desk:
         assert local.http.get(f"{self.path}?{query}").status_code == 200
         sim = by_slug(slug)
         assert sim is not None
-        session = local.app.state.sessions.find(sim, room_of(self.key))
+        session = local.services.sessions.find(sim, room_of(self.key))
         assert session is not None
         self.session: Session = session
 
@@ -110,7 +111,7 @@ class Desk:
         return self.session.sim.offers(self.params, self.session.solution, *self.session.given)
 
     def solution(self) -> Any:
-        wait_for(lambda: self.session._drawing is None, "the drawing to end")
+        asyncio.run_coroutine_threadsafe(self.session.settled(), self.local._host.loop).result(PATIENCE)
         return self.session.solution
 
 
@@ -220,13 +221,13 @@ def test_files_are_kept_as_long_as_their_session(local: Local) -> None:
     desk = Desk(local)
     assert desk.bring("mine.ply", FILE).status_code == 200
     name = desk.params.file
-    assert local.app.state.sessions.uploaded_bytes() >= len(FILE)
+    assert local.services.sessions.uploaded_bytes() >= len(FILE)
     assert library_of(local).trouble(name) == ""
     assert "gone" in library_of(local).trouble("upload-never-there")
     assert desk.bring("other.ply", FILE).status_code == 200
     assert "gone" in library_of(local).trouble(name), "of two files the newer one is kept"
     desk.session.left_at = -1e9
-    local.app.state.sessions.sweep()
+    local.services.sessions.sweep()
     assert "gone" in library_of(local).trouble(desk.params.file)
 
 
@@ -238,7 +239,7 @@ def test_servers_in_one_process_have_files_of_their_own(local: Local) -> None:
 
 def test_the_server_keeps_no_more_than_it_can(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
     desk = Desk(local)
-    monkeypatch.setattr(local.app.state.sessions, "uploaded_bytes", lambda: 10_000_000)
+    monkeypatch.setattr(local.services.sessions, "uploaded_bytes", lambda: 10_000_000)
     answer = desk.bring("mine.ply", FILE)
     assert answer.status_code == 503
     assert desk.params.dataset == "room"
@@ -253,7 +254,7 @@ def test_slow_files_hold_up_nobody_and_are_given_up(local: Local, monkeypatch: p
         for line in lines[:-1]:
             line.sendall(head.encode())
         assert Desk(local).bring("mine.ply", FILE).status_code == 200
-        monkeypatch.setattr(files, "STALL", 0.05)
+        monkeypatch.setattr(coming, "STALL", 0.05)
         lines[-1].sendall(head.encode())
         lines[-1].settimeout(PATIENCE)
         answer = lines[-1].makefile("rb").read(4000)
@@ -434,7 +435,7 @@ def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) 
         assert begun.wait(20)
     assert local.http.get("/healthz").status_code == 200  # the loop has heard by now that the page is gone
     go_on.set()
-    local.app.state.sessions.aside.submit(lambda: None).result()
+    local.services.sessions.aside.submit(lambda: None).result()
     assert local.http.get("/healthz").status_code == 200
     assert desk.params.dataset == "room"
     wait_for(lambda: set(clouds._uploads) == before, "the file to be forgotten")

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from app.session import new_key, room_of
+from app.rooms.keys import new_key, room_of
 from sims import SIMS
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import PROTOCOL

@@ -17,9 +17,12 @@ import msgspec
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from app import bridge
-from app.protocol import LARGEST
-from app.session import new_key, room_of
+from app.rooms.keys import new_key, room_of
+from app.sockets import channel as channels
+from app.sockets import scene
+from app.sockets.protocol import LARGEST
+from app.sockets.scene import Link
+from app.sockets.visits import Visit
 from sims.kit.viewer import Viewer
 from sims.kit.viser_internals import PROTOCOL, Wire
 from tests.app.conftest import Local
@@ -303,7 +306,8 @@ def test_a_channel_that_does_not_greet_is_closed(local: Local, learner: Page, fi
 
 
 def test_a_channel_that_says_nothing_is_closed(local: Local, learner: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bridge, "HELLO_WITHIN", 0.05)
+    monkeypatch.setattr(scene, "HELLO_WITHIN", 0.05)
+    monkeypatch.setattr(channels, "GREETED_WITHIN", 0.25)
     before = local.refusals["no greeting"]
     key = new_key()
     channel = connect(f"{local.url}/sims/{SLUG}/s/{room_of(key)}/{key}/channel", viser=False)
@@ -536,12 +540,14 @@ def test_broken_websocket_frames_do_no_harm(local: Local, learner: Page, frame: 
 
 def test_connections_that_break_off_leave_no_viewer(local: Local, learner: Page) -> None:
     with Page(local.url) as teacher:
-        session = local.app.state.sessions.find(_sim(), teacher.room)
+        session = local.services.sessions.find(_sim(), teacher.room)
+        assert session is not None
+        viewers, listeners = session.drawing.viewers, session.telling.listeners
         for _ in range(5):
             other = Page(local.url, room=teacher.room)
             for end in (other.viser, other.channel):
                 end.socket.shutdown(socket.SHUT_RDWR)  # without websocket's own farewell
-        wait_for(lambda: (len(session.viewers), len(session.listeners)) == (1, 1), "the broken ones to be forgotten")
+        wait_for(lambda: (len(viewers), len(listeners)) == (1, 1), "the broken ones to be forgotten")
         teacher.works()
     learner.works()
 
@@ -560,12 +566,13 @@ def alive(kind: type) -> int:
 
 def test_pages_that_went_leave_nothing_behind(local: Local, learner: Page) -> None:
     learner.settle()
-    before = {kind: alive(kind) for kind in (Viewer, Wire, bridge.Visit, bridge.Link)}
+    open_before = len(local.services.bridge.visits)
+    before = {kind: alive(kind) for kind in (Viewer, Wire, Visit, Link)}
     for _ in range(20):
         Page(local.url).close()
     # What an earlier test's page had may still have been there before, and be freed meanwhile.
     wait_for(lambda: all(alive(kind) <= count for kind, count in before.items()), "what the pages had to be freed")
-    assert not [v for v in local.app.state.bridge._visits.values() if v.sockets < 1]
+    wait_for(lambda: len(local.services.bridge.visits) <= open_before, "the visits to end")
 
 
 # ---- the server as a process of its own

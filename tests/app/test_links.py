@@ -6,7 +6,8 @@ import asyncio
 
 import numpy as np
 
-from app.session import Session, Sessions
+from app.rooms.registry import Sessions
+from app.rooms.session import Session
 from sims.camera import SIM as CAMERA
 from sims.camera.world import PLACES
 from tests.app.conftest import Local
@@ -96,4 +97,4 @@ def test_a_selection_ends_a_motion_and_one_that_is_none_does_not() -> None:
 
 
 def moving(session: Session) -> bool:
-    return session._motion is not None
+    return session.motion.task is not None

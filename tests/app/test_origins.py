@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from starlette.datastructures import Headers
 
-from app import origins
+from app.sockets import origins
 
 SCHOOL = {origins.parse("https://school.example")}
 

@@ -12,7 +12,7 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from app.session import new_key, room_of
+from app.rooms.keys import new_key, room_of
 from tests.app.page import SLUG, connect
 from tests.proxies import find
 from tests.server import PATIENCE, ROOT, Server, free_port, wait_for

@@ -10,7 +10,7 @@ from urllib.parse import parse_qs, urlsplit
 import httpx
 import pytest
 
-from app.links import TRACKING
+from app.routes.links import TRACKING
 from geometry import GeometryError
 from sims import SIMS, by_slug
 from tests.app.conftest import Local
@@ -56,8 +56,11 @@ def test_the_minus_of_books_is_a_minus(local: Local, slug: str, query: str, name
     page = local.http.get(f"/sims/{slug}/embed?{query}&view=−3,−3,2,0,0,0")
     assert page.status_code == 200
     room = json.loads(page_data(page.text))["path"].split("/")[4]
-    (params,) = [s.params for (_, r), s in local.app.state.sessions._by_room.items() if r == room]
-    assert params.model_dump(mode="json")[name] == value
+    sim = by_slug(slug)
+    assert sim is not None
+    session = local.services.sessions.find(sim, room)
+    assert session is not None
+    assert session.params.model_dump(mode="json")[name] == value
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, NegotiationError
 
-from app.session import new_key, room_of
+from app.rooms.keys import new_key, room_of
 from sims import SIMS
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
@@ -212,7 +212,7 @@ def test_websocket_with_a_wrong_address_is_refused(local: Local, room: str, key:
 def test_websocket_from_another_sites_page_is_refused_with_a_reason(
     local: Local, origin: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    local.app.state.bridge._warned.clear()
+    local.services.bridge.visits.warned.clear()
     for address, viser in sockets(local.url, ROOM, KEY):
         before = local.refusals["origin"]
         assert "page" in refusal(address, viser=viser, origin=origin)

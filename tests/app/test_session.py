@@ -18,10 +18,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from app import motion, session
-from app.commands import Commands
-from app.session import Full, Session, Sessions, new_key, room_of
-from app.workers import workers
+from app.rooms import drawing, motion, registry, telling
+from app.rooms.keys import new_key, room_of
+from app.rooms.registry import Full, Sessions
+from app.rooms.session import Session
+from app.rooms.solver import workers
+from app.sockets.commands import Commands
 from sims import by_slug
 from sims.kit.fields import NumberBox, OptionalNumber, Slider, Vector
 from sims.kit.params import Params
@@ -84,19 +86,15 @@ class Room:
         self.told: list[dict[str, Any]] = []
         self.eye = viewer()
         self.session.join(self.eye)
-        self.session.listeners.add(self.told.append)
+        self.session.listen(self.told.append)
 
     async def drawn(self) -> None:
         """Wait until nothing is left to draw."""
-        while (drawing := self.session._drawing) is not None:
-            await asyncio.wait([drawing])
+        await self.session.settled()
 
     async def moved(self) -> None:
         """Wait until the motion has ended, and before that until it is known which it is."""
-        while (seeking := self.session._seeking) is not None:
-            await asyncio.wait([seeking])
-        while (moving := self.session._motion) is not None:
-            await asyncio.wait([moving])
+        await self.session.rested()
 
     @property
     def errors(self) -> list[str]:
@@ -390,7 +388,7 @@ def test_reduced_motion_steps_instead(monkeypatch: pytest.MonkeyPatch) -> None:
 
     async def test() -> None:
         room = Room()
-        room.session.reduced_motion = True
+        room.session.motion.reduced = True
         room.session.act("grow")
         await room.moved()
         await room.drawn()
@@ -405,7 +403,7 @@ def test_a_motion_ends_when_nobody_looks() -> None:
         room.session.act("grow")
         await asyncio.sleep(0.05)
         room.session.leave(viewer=room.eye)
-        room.session.leave(listener=room.session.listeners.copy().pop())
+        room.session.leave(listener=room.told.append)
         size = room.session.params.model_dump()["size"]
         await asyncio.sleep(0.1)
         assert room.session.params.model_dump()["size"] == size
@@ -488,7 +486,7 @@ def test_a_glide_is_validated_before_it_begins() -> None:
         with pytest.raises(ValidationError):
             room.session.glide({"kind": "blue", "size": 1000}, 0.3)
         assert room.session.params == ToyParams()
-        assert room.session._motion is not None, "what moved before goes on"
+        assert room.session.motion.task is not None, "what moved before goes on"
 
     run(test)
 
@@ -496,10 +494,10 @@ def test_a_glide_is_validated_before_it_begins() -> None:
 def test_a_glide_is_a_jump_where_motion_is_reduced() -> None:
     async def test() -> None:
         room = Room()
-        room.session.reduced_motion = True
+        room.session.motion.reduced = True
         room.session.glide({"size": 90}, 5.0)
         assert room.session.params == ToyParams(size=90)
-        assert room.session._motion is None
+        assert room.session.motion.task is None
 
     run(test)
 
@@ -662,7 +660,7 @@ def test_state_message_holds_parameters_query_and_words() -> None:
 
 
 def test_pages_are_told_the_last_state_and_not_each_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "STATE_INTERVAL", 0.05)
+    monkeypatch.setattr(telling, "STATE_INTERVAL", 0.05)
 
     async def test() -> None:
         room = Room()
@@ -712,7 +710,7 @@ def test_no_more_rooms_than_the_limit() -> None:
         known.leave(viewer=eyes["a"])
         with pytest.raises(Full):
             sessions.open(sim, "c", ToyParams())  # its page may be loading anew
-        known.left_at -= session.UNVISITED - 1.0
+        known.left_at -= registry.UNVISITED - 1.0
         sessions.open(sim, "c", ToyParams())
         assert sessions.find(sim, "a") is None, "the one that nobody looks at makes place"
         assert sessions.find(sim, "b") is not None
@@ -725,7 +723,7 @@ def test_of_rooms_that_nobody_visits_the_one_left_longest_makes_place() -> None:
     sim, _ = toy()
     sessions = Sessions(3)
     for age, room in enumerate(("new", "old", "older")):
-        sessions.open(sim, room, ToyParams()).left_at -= session.UNVISITED - 4.0 + age
+        sessions.open(sim, room, ToyParams()).left_at -= registry.UNVISITED - 4.0 + age
     sessions.open(sim, "next", ToyParams())
     assert [room for room in ("new", "old", "older", "next") if sessions.find(sim, room)] == ["new", "old", "next"]
 
@@ -739,7 +737,7 @@ def test_rooms_that_nobody_visits_are_swept(monkeypatch: pytest.MonkeyPatch) -> 
         visited.join(eye)
         sessions.sweep()
         assert len(sessions) == 2, "they are kept for a while"
-        monkeypatch.setattr(session, "UNVISITED", 0.0)
+        monkeypatch.setattr(registry, "UNVISITED", 0.0)
         left.left_at -= 1
         sessions.open(sim, "new", ToyParams())
         assert sessions.find(sim, "left") is None, "a room that nobody visits makes place"
@@ -817,7 +815,7 @@ def test_long_work_ends_when_a_newer_state_waits() -> None:
                 raise
             return SimpleNamespace(double=2.0 * params.size)
 
-        room.session.sim = dataclasses.replace(room.session.sim, solve=solve)
+        room.session.drawing.sim = dataclasses.replace(room.session.sim, solve=solve)
         room.session.change({"size": 5.0})
         await begun.wait()
         room.session.change({"size": 6.0})
@@ -835,8 +833,6 @@ def test_what_a_handle_of_a_heavy_sim_means_is_found_beside_the_loop() -> None:
         await room.drawn()
         room.session.drag("/grip", (7.0, 0.0, 0.0))
         assert room.session.params != ToyParams(size=7)
-        assert room.session._seeking is not None
-        await room.session._seeking
         await room.drawn()
         assert room.eye.seen[-1] == (7.0, 14.0)
 
@@ -860,8 +856,6 @@ def test_of_a_flood_of_places_only_the_last_is_looked_for() -> None:
             await asyncio.sleep(0)
         for size in (2.0, 3.0, 4.0):
             room.session.drag("/grip", (size, 0.0, 0.0))
-        assert room.session._seeking is not None
-        await room.session._seeking
         await room.drawn()
         assert asked == [1.0, 4.0]
         assert room.eye.seen[-1] == (4.0, 8.0)
@@ -877,7 +871,7 @@ class Slow:
         self.deaf = False
         """It doesn't ask whether it is still wanted."""
         self.let_go = threading.Event()
-        room.session.sim = dataclasses.replace(room.session.sim, solve=self)
+        room.session.drawing.sim = dataclasses.replace(room.session.sim, solve=self)
 
     def __call__(self, params: ToyParams) -> Any:
         if params.size == 5.0:
@@ -901,8 +895,8 @@ async def told(room: Room, kind: str) -> dict[str, Any]:
 
 
 def test_pages_are_told_how_far_long_work_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "LONG", 0.02)
-    monkeypatch.setattr(session, "REPORTED_EVERY", 0.01)
+    monkeypatch.setattr(drawing, "LONG", 0.02)
+    monkeypatch.setattr(drawing, "REPORTED_EVERY", 0.01)
 
     async def test() -> None:
         room = Room(heavy=True)
@@ -932,8 +926,8 @@ def test_quick_work_is_not_worth_a_word() -> None:
 
 @pytest.mark.parametrize("deaf", [False, True])
 def test_long_work_can_be_cancelled(monkeypatch: pytest.MonkeyPatch, deaf: bool) -> None:
-    monkeypatch.setattr(session, "LONG", 0.02)
-    monkeypatch.setattr(session, "REPORTED_EVERY", 0.01)
+    monkeypatch.setattr(drawing, "LONG", 0.02)
+    monkeypatch.setattr(drawing, "REPORTED_EVERY", 0.01)
 
     async def test() -> None:
         room = Room(heavy=True, start=ToyParams(size=3))
@@ -961,7 +955,7 @@ def test_a_sim_that_opens_with_long_work_opens_without_it_when_cancelled() -> No
     async def test() -> None:
         room = Room(heavy=True, start=ToyParams(size=5))
         Slow(room)
-        while room.session._work is None:
+        while room.session.drawing.work is None:
             await asyncio.sleep(0.001)
         room.session.cancel()
         await room.drawn()
@@ -1062,8 +1056,7 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
         room.drag("/grip", (1.0, 2.0, 3.0))
         room.change({"size": 5.0})
         await asyncio.sleep(0.1)
-        while room._drawing is not None or room._seeking is not None:
-            await asyncio.sleep(0.05)
+        await room.settled()
         assert most == 1
         await sessions.close()
 

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from app.motion import between
+from app.rooms.motion import between
 from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
 from sims.camera.solution import LIFT
 from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
@@ -365,12 +365,12 @@ def test_what_is_pointed_at_in_picture_or_table_lights_up_in_the_scene_and_passe
     rig.show(START)
     assert not rig.model.visible("/lit")
     for name in ("cube-far", "near-foot"):
-        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.host.call(lambda name=name: rig.session.hover(name))  # type: ignore[misc]
         rig.settle()
         assert rig.model.visible("/lit")
         np.testing.assert_allclose(rig.model.world_pose("/lit")[:3, 3], PLACES[name])
     for name in ("", "nobody"):
-        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.host.call(lambda name=name: rig.session.hover(name))  # type: ignore[misc]
         rig.settle()
         assert not rig.model.visible("/lit")
     assert rig.session.params == START, "pointing changes nothing"
@@ -378,11 +378,11 @@ def test_what_is_pointed_at_in_picture_or_table_lights_up_in_the_scene_and_passe
 
 def test_what_is_lit_stays_lit_while_the_camera_moves(rig: Rig) -> None:
     rig.show(START)
-    rig.host.call(lambda: rig.session.point("cube-far"))
+    rig.host.call(lambda: rig.session.hover("cube-far"))
     rig.change(pan=20.0)
     rig.settle()
     assert rig.model.visible("/lit")
-    rig.host.call(lambda: rig.session.point(""))
+    rig.host.call(lambda: rig.session.hover(""))
     rig.settle()
     assert not rig.model.visible("/lit")
 

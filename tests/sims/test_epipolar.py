@@ -612,7 +612,7 @@ def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(rig:
     rig.show(p)
     before = rig.model.snapshot()
     for name, place in (("1", p.point), ("4", OTHERS[2])):
-        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.host.call(lambda name=name: rig.session.hover(name))  # type: ignore[misc]
         rig.settle()
         after = rig.model.snapshot()
         assert {key for key in after if key not in before} == {"scene /lit", "scene /lit/ball", "scene /lit/rays"}
@@ -624,7 +624,7 @@ def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(rig:
     close(rig.model.points("/lit/rays")[1], [(0.8, 0.1, 1.0), OTHERS[2]], within=1e-6)
     rig.show(p)
     for name in ("", "7", "13", "0", "nobody"):
-        rig.host.call(lambda name=name: rig.session.point(name))  # type: ignore[misc]
+        rig.host.call(lambda name=name: rig.session.hover(name))  # type: ignore[misc]
         rig.settle()
         assert not differences(before, rig.model.snapshot()), "points that aren't shown don't light up"
 

@@ -346,11 +346,11 @@ def test_a_zero_axis_from_a_control_is_refused_with_a_message_and_the_last_state
     told: list[dict[str, Any]] = []
     good = START.changed({"axis": (0.0, 2.0, 0.0)})
     rig.show(good)
-    rig.session.listeners.add(told.append)
+    rig.session.listen(told.append)
     before = rig.model.snapshot()
     rig.browser.move("axis", [0.0, 0.0, 0.0])
     rig.settle()
-    rig.session.listeners.clear()
+    rig.session.leave(listener=told.append)
     errors = [m["message"] for m in told if m["type"] == "error"]
     assert len(errors) == 1
     assert errors[0].startswith("axis: got [0.0, 0.0, 0.0]")

@@ -398,7 +398,7 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
 def test_every_action_ends_in_a_state(sim: AnySim) -> None:
     for action in sim.actions:
         with Rig(sim) as rig:
-            rig.session.reduced_motion = True
+            rig.session.motion.reduced = True
             result = action.run(sim.params())
             changes = [result] if hasattr(result, "keys") else [step.changes for step in result]
             assert changes

@@ -496,10 +496,10 @@ def test_the_true_point_has_a_row_with_the_errors_that_the_noise_made() -> None:
 def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(
     rig: Rig, name: str, nodes: set[str]
 ) -> None:
-    rig.host.call(lambda: rig.session.point(""))
+    rig.host.call(lambda: rig.session.hover(""))
     rig.show(NOISY)
     before = rig.model.snapshot()
-    rig.host.call(lambda: rig.session.point(name))
+    rig.host.call(lambda: rig.session.hover(name))
     rig.settle()
     after = rig.model.snapshot()
     assert {key.removeprefix("scene ") for key in after if key not in before} == nodes
@@ -509,7 +509,7 @@ def test_what_is_pointed_at_lights_up_in_the_scene_and_nothing_else_changes(
             np.testing.assert_array_equal(rig.model.points(f"/{side}/lit"), rig.model.points(f"/{side}/ray"))
             rig.show(NOISY.changed({"left_uv": (300, 300), "right_uv": (200, 300)}))
             np.testing.assert_array_equal(rig.model.points(f"/{side}/lit"), rig.model.points(f"/{side}/ray"))
-    rig.host.call(lambda: rig.session.point(""))
+    rig.host.call(lambda: rig.session.hover(""))
     rig.show(NOISY)
     assert not differences(before, rig.model.snapshot(), within=1e-12)
 

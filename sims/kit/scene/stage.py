@@ -35,7 +35,7 @@ class Stage:
     def __init__(
         self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Place], None],
         pick: Callable[[str], None] = lambda name: None,
-        point: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
+        click: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
         width: float = math.inf, phone: bool = False,
     ) -> None:  # fmt: skip
         self.client = client
@@ -48,7 +48,7 @@ class Stage:
         self.palette = palette
         self._drag = drag
         self._pick = pick
-        self._point = point
+        self._click = click
 
     def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> Node:
         """The light floor grid, and soft light from above."""
@@ -67,7 +67,7 @@ class Stage:
 
         @self.scene.on_click()  # type: ignore[arg-type]
         async def _(event: Any) -> None:
-            self._point(name, (*event.ray_origin, *event.ray_direction))
+            self._click(name, (*event.ray_origin, *event.ray_direction))
 
     def look(self, position: Vector, look_at: Vector, radius: float) -> None:
         """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""

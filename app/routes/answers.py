@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine
 from contextvars import copy_context
 from typing import Any, TypeVar
 
-from app.workers import workers
+from app.rooms.solver import workers
 from sims.kit.progress import Work, at_work
 
 T = TypeVar("T")

@@ -43,7 +43,7 @@ class Ended(Exception):
 
 
 @dataclass
-class Bucket:
+class RateLimit:
     """Lets a number of messages a second pass, with as much again for a burst."""
 
     rate: float = MESSAGES_PER_SECOND
@@ -78,7 +78,7 @@ class Inbox:
         self._refusals = refusals
         self._reason = reason
         """What nonsense is counted under."""
-        self._bucket = Bucket()
+        self._limit = RateLimit()
 
     async def next(self) -> Read:
         """The next message. Raises `Ended`."""
@@ -90,7 +90,7 @@ class Inbox:
             if data is None or len(data) > LARGEST_MESSAGE:
                 self._refusals["size or kind"] += 1
                 raise Ended(1009)
-            if self._bucket.passes():
+            if self._limit.passes():
                 return self._read(data)
             self._refusals["rate"] += 1
             self._enough()
@@ -100,12 +100,12 @@ class Inbox:
             return Read(data, self._decoder.decode(data))
         except Exception as error:  # whatever a decoder stumbles over is the sender's doing: depth, text, numbers
             self._refusals[self._reason] += 1
-            self._bucket.refused += NONSENSE
+            self._limit.refused += NONSENSE
             self._enough()
             return Read(data, None, str(error)[:200] or type(error).__name__)
 
     def _enough(self) -> None:
-        if self._bucket.flooding:
+        if self._limit.flooding:
             raise Ended(1008)
 
 

@@ -95,34 +95,6 @@ class SceneNodeDragMessage(Incoming, tag=True):
         return self.name if self.phase == "update" else None
 
 
-class TransformControlsUpdateMessage(Incoming, tag=True):
-    name: Text
-    wxyz: Vec4
-    position: Vec3
-    owner: Text = ""
-
-    @property
-    def value_of(self) -> str | None:
-        return self.name
-
-
-class TransformControlsDragStartMessage(Incoming, tag=True):
-    name: Text
-    owner: Text = ""
-
-
-class TransformControlsDragEndMessage(Incoming, tag=True):
-    name: Text
-    owner: Text = ""
-
-
 decoder = msgspec.msgpack.Decoder(
-    ViewerCameraMessage
-    | GuiUpdateMessage
-    | ScenePointerMessage
-    | SceneNodeClickMessage
-    | SceneNodeDragMessage
-    | TransformControlsUpdateMessage
-    | TransformControlsDragStartMessage
-    | TransformControlsDragEndMessage
+    ViewerCameraMessage | GuiUpdateMessage | ScenePointerMessage | SceneNodeClickMessage | SceneNodeDragMessage
 )

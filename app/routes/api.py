@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, get_type_hints
 
 import msgspec
-from fastapi import FastAPI, HTTPException, Request
+from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import Response
 from pydantic import ValidationError
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app import pages
-from app.answers import RETRY, Answers, Busy, Gone
-from app.pages import sim_or_404
-from app.session import Sessions
+from app.routes.answers import RETRY, Busy
+from app.routes.rendering import sim_or_404
+from app.routes.services import Given
 from app.trouble import question
 from app.values import complaints, shown, strict
 from geometry import GeometryError
 from sims import SIMS
 from sims.kit.params import Params
 from sims.kit.schema import solution_schema
-from sims.kit.sim import Library, Sim, jsonable
+from sims.kit.sim import Sim, jsonable
 
 AnySim = Sim[Any, Any]
 ANYWHERE = {"access-control-allow-origin": "*"}
@@ -126,48 +125,58 @@ def _item(
     }  # fmt: skip
 
 
-def add_api(app: FastAPI, sessions: Sessions) -> Answers:
-    """The addresses of the API; what works out its long answers."""
-    answers = Answers()
+router = APIRouter()
 
-    @app.head("/api/sims", include_in_schema=False)
-    @app.get("/api/sims", tags=["catalogue"])
-    async def catalogue() -> list[dict[str, Any]]:
-        """Every sim with its title, summary and concepts."""
-        return [pages.card(sim) for sim in SIMS]
 
-    @app.head("/api/sims/{slug}", include_in_schema=False)
-    @app.get("/api/sims/{slug}", tags=["catalogue"])
-    async def one(slug: str) -> dict[str, Any]:
-        """One sim, with its objectives and the JSON schemas of its parameters and its solution."""
-        sim = sim_or_404(slug)
-        return {**pages.details(sim), "solution": solution_schema(solved(sim))}
+@router.head("/api/sims", include_in_schema=False)
+@router.get("/api/sims", tags=["catalogue"])
+async def catalogue() -> list[dict[str, Any]]:
+    """Every sim with its title, summary and concepts."""
+    return [_card(sim) for sim in SIMS]
 
-    for sim in SIMS:
-        _add_solve(app, answers, sim, sessions.given(sim))
 
-    @app.post("/api/sims/{slug}/solve", include_in_schema=False)
-    async def unknown(slug: str) -> None:
-        sim_or_404(slug)
+@router.head("/api/sims/{slug}", include_in_schema=False)
+@router.get("/api/sims/{slug}", tags=["catalogue"])
+async def one(slug: str) -> dict[str, Any]:
+    """One sim, with its objectives and the JSON schemas of its parameters and its solution."""
+    sim = sim_or_404(slug)
+    return {**_details(sim), "solution": solution_schema(solved(sim))}
 
-    @app.exception_handler(BadBody)
-    async def bad_body(_: Request, error: BadBody) -> Response:
-        return Json({"detail": error.items}, 422)
 
-    @app.exception_handler(Busy)
-    async def busy(_: Request, error: Busy) -> Response:
-        return Json({"detail": str(error)}, error.status, headers={"retry-after": str(RETRY)})
+def _card(sim: AnySim) -> dict[str, Any]:
+    return {"slug": sim.slug, "title": sim.title, "summary": sim.summary, "concepts": list(sim.concepts)}
 
-    @app.exception_handler(Gone)
-    async def gone(_: Request, error: Gone) -> Response:
-        return Response(status_code=499)
 
-    @app.exception_handler(Exception)
-    async def failed(request: Request, error: Exception) -> Response:
-        headers = ANYWHERE if in_api(request.scope) else None  # no middleware sees this answer
-        return Json({"detail": "Something went wrong on the server; its log says what."}, 500, headers=headers)
+def _details(sim: AnySim) -> dict[str, Any]:
+    return {
+        **_card(sim),
+        "objectives": [{"text": o.text, "level": o.level} for o in sim.objectives],
+        "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
+        "parameters": sim.params.model_json_schema(),
+    }
 
-    return answers
+
+async def bad_body(_: Request, error: Exception) -> Response:
+    """The answer to a `BadBody`."""
+    assert isinstance(error, BadBody)
+    return Json({"detail": error.items}, 422)
+
+
+async def busy(_: Request, error: Exception) -> Response:
+    """The answer to a `Busy`."""
+    assert isinstance(error, Busy)
+    return Json({"detail": str(error)}, error.status, headers={"retry-after": str(RETRY)})
+
+
+async def gone(_: Request, error: Exception) -> Response:
+    """The answer to a `Gone`, which nobody reads."""
+    return Response(status_code=499)
+
+
+async def failed(request: Request, error: Exception) -> Response:
+    """The answer where something went wrong that nobody has foreseen."""
+    headers = ANYWHERE if in_api(request.scope) else None  # no middleware sees this answer
+    return Json({"detail": "Something went wrong on the server; its log says what."}, 500, headers=headers)
 
 
 def solved(sim: AnySim) -> type:
@@ -176,32 +185,33 @@ def solved(sim: AnySim) -> type:
     return kind
 
 
-def _add_solve(app: FastAPI, answers: Answers, sim: AnySim, given: tuple[Library, ...]) -> None:
-    def answer(params: Params) -> bytes:
-        solution = jsonable(sim.solve(params, *given))
-        return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
-
-    async def solve(request: Request) -> Response:
+def _add_solve(sim: AnySim) -> None:
+    async def solve(request: Request, given: Given) -> Response:
         params = read(request, await request.body(), sim.params)
+
+        def answer() -> bytes:
+            solution = jsonable(sim.solve(params, *given.sessions.given(sim)))
+            return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
+
         try:
-            found = await _find(request, lambda: answer(params)) if sim.heavy else answer(params)
+            found = await given.answers.find(_address(request), answer, _left(request)) if sim.heavy else answer()
         except GeometryError as error:
             known = error.argument if error.argument in sim.params.model_fields else ""
             item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
             raise BadBody(item) from None
         return Response(found, media_type="application/json")
 
-    async def _find(request: Request, find: Callable[[], bytes]) -> bytes:
-        address = "" if request.client is None else request.client.host
-        return await answers.find(address, find, _left(request))
-
     solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
     solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
-    app.post(
+    router.post(
         f"/api/sims/{sim.slug}/solve", tags=["solve"], response_class=Response,
         openapi_extra={"requestBody": {"content": {"application/json": {"schema": sim.params.model_json_schema()}}}},
         responses=_responses(sim),
     )(solve)  # fmt: skip
+
+
+def _address(request: Request) -> str:
+    return "" if request.client is None else request.client.host
 
 
 async def _left(request: Request) -> None:
@@ -229,3 +239,12 @@ def _responses(sim: AnySim) -> dict[int | str, dict[str, Any]]:
 def _response(words: str, schema: Mapping[str, Any] | None = None) -> dict[str, Any]:
     plain = {"type": "object", "properties": {"detail": {"type": "string"}}}
     return {"description": words, "content": {"application/json": {"schema": schema or plain}}}
+
+
+for _sim in SIMS:
+    _add_solve(_sim)
+
+
+@router.post("/api/sims/{slug}/solve", include_in_schema=False)
+async def unknown(slug: str) -> None:
+    sim_or_404(slug)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator, Mapping
 from typing import Any
 
 from sims.kit.params import Params
@@ -52,3 +52,45 @@ async def play(
             yield {k: between(getattr(start, k), v, done) for k, v in step.changes.items()}
             await asyncio.sleep(FRAME)
         yield step.changes
+
+
+class Motion:
+    """The motion of a session, if one runs.
+
+    `following` finds the next step, `now` the state, `show` has changes drawn; what goes wrong is told to `failed`.
+    """
+
+    def __init__(
+        self, following: Callable[[Iterator[Step]], Coroutine[Any, Any, Step | None]], now: Callable[[], Params],
+        show: Callable[[Mapping[str, Any]], Coroutine[Any, Any, None]], failed: Callable[[Exception], None],
+    ) -> None:  # fmt: skip
+        self._following = following
+        self._now = now
+        self._show = show
+        self._failed = failed
+        self.reduced = False
+        self.task: asyncio.Task[None] | None = None
+        """As long as a motion runs."""
+
+    def begin(self, steps: Iterator[Step]) -> None:
+        """Play a motion, in place of one that runs."""
+        self.stop()
+        self.task = asyncio.get_running_loop().create_task(self._play(steps))
+
+    def stop(self) -> None:
+        """End a running motion where it is."""
+        if self.task is not None:
+            self.task.cancel()
+            self.task = None
+
+    async def _play(self, steps: Iterator[Step]) -> None:
+        try:
+            async for changes in play(self._each(steps), self._now, reduced=self.reduced):
+                await self._show(changes)
+        except Exception as error:
+            self._failed(error)
+        self.task = None
+
+    async def _each(self, steps: Iterator[Step]) -> AsyncIterator[Step]:
+        while (step := await self._following(steps)) is not None:
+            yield step

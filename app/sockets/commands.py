@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from app.session import Session
+from app.rooms.session import Session
 from app.trouble import Unknown, error_message, refused
 from app.values import shown, strict
 from sims.kit.refusals import Complaint
@@ -56,6 +56,10 @@ class Commands:
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to."""
         self.attempt(self._session.drag, name, place)
+
+    def click(self, name: str, ray: tuple[float, ...]) -> None:
+        """Take a click on a node of the scene: the origin and direction of its ray."""
+        self.attempt(self._session.click, name, ray)
 
     def hold(self, name: str, pixel: tuple[float, float]) -> None:
         """Take the place where a handle in a picture was dragged to; those of the scene have names with a slash."""

@@ -1,4 +1,4 @@
-"""The pages: launcher, sim pages, the viewer's page, and what the API says about sims."""
+"""Makes pages from templates."""
 
 from __future__ import annotations
 
@@ -82,21 +82,6 @@ def client_file(name: str) -> tuple[bytes, bytes]:
     """A file of viser's client, plain and compressed. Raises KeyError."""
     plain = viser_client.files()[name]
     return plain, gzip.compress(plain, 9)
-
-
-def card(sim: AnySim) -> dict[str, Any]:
-    """One sim in the catalogue."""
-    return {"slug": sim.slug, "title": sim.title, "summary": sim.summary, "concepts": list(sim.concepts)}
-
-
-def details(sim: AnySim) -> dict[str, Any]:
-    """One sim with its objectives and the schema of its parameters."""
-    return {
-        **card(sim),
-        "objectives": [{"text": o.text, "level": o.level} for o in sim.objectives],
-        "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
-        "parameters": sim.params.model_json_schema(),
-    }
 
 
 def sim_or_404(slug: str) -> AnySim:

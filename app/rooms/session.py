@@ -1,0 +1,269 @@
+"""Sessions (rooms): one Params, any number of viewers, one writer.
+
+Everything here runs on viser's event loop, so there are no locks. An update makes the newest Params; `Drawing` solves
+and draws them.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from pydantic import ValidationError
+
+from app.rooms.drawing import Drawing
+from app.rooms.highlight import Highlight
+from app.rooms.looking_up import LookingUp
+from app.rooms.motion import Motion, gliding
+from app.rooms.solver import Solver
+from app.rooms.telling import Listener, Message, Telling
+from app.trouble import Unknown, error_message
+from sims.kit.params import Params
+from sims.kit.sim import Library, Sim, Step, jsonable
+from sims.kit.viewer import Viewer
+
+SOLVED_WITHIN = 20.0
+"""Seconds that a page which wants the solution waits for that of the newest state."""
+
+
+class Session:
+    """One running sim."""
+
+    def __init__(
+        self, sim: Sim[Any, Any], room: str, params: Params, solver: Solver, library: Library | None = None
+    ) -> None:
+        self.sim = sim
+        self.room = room
+        self.params = self.initial = params
+        self.version = 0
+        self.waiting = False
+        """Only people who watch have come so far."""
+        self.left_at = time.monotonic()
+        self.library = library
+        self.given = () if library is None else (library,)
+        """What the sim's functions need besides the parameters."""
+        self.uploaded, self.uploaded_bytes = "", 0
+        """What the library knows the file as that somebody uploaded, and its size; it stays as long as the session."""
+        self._solver = solver
+        self.telling = Telling(self.state)
+        turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
+        self.drawing = Drawing(
+            sim, params, self.given, solver, turn, self.telling, lambda: self.params, self._not_solved
+        )
+        self.motion = Motion(self._following, lambda: self.params, self._show, self._failed)
+        self._highlight = Highlight(self.telling)
+        self._looking_up = LookingUp(solver, turn, self._failed)
+        if sim.heavy:
+            self.drawing.soon()
+
+    @property
+    def solution(self) -> Any:
+        """Of the newest state that is solved; None before there is one."""
+        return self.drawing.solution
+
+    def begin(self, params: Params, opened: Params) -> None:
+        """Somebody with control comes, and brings the room's state and the one that a reset leads back to."""
+        self.waiting = False
+        self.initial = opened
+        self._set(params)
+
+    # ---- changes
+
+    def change(self, changes: Mapping[str, Any], *, live: bool = True) -> None:
+        """Take changes from a control (kept within bounds) or, not live, from a link or message (refused if bad).
+
+        Raises pydantic's ValidationError for values that are refused; the state stays.
+        """
+        self.motion.stop()
+        self.drawing.soon()  # also where nothing changes: a control that was moved too far goes back
+        if live:
+            self._set(self.sim.offers(self.params, self.solution, *self.given).moved(changes))
+        else:
+            self._set(self.params.changed(changes))
+
+    def glide(self, changes: Mapping[str, Any], seconds: float) -> None:
+        """Take changes as from a link, and go there within some seconds; at once where motion is reduced.
+
+        Numbers glide; words, switches, and lists of another length are set at the start. Raises ValidationError.
+        """
+        target = self.params.changed(changes)
+        self.motion.stop()
+        self.drawing.soon()
+        if self.motion.reduced:
+            self._set(target)
+            return
+        ends = gliding(self.params, target)
+        self._set(target.moved({name: getattr(self.params, name) for name in ends}))
+        self.motion.begin(iter([Step(ends, seconds), Step(dict(target.__dict__), 0.0)]))
+
+    def drag(self, name: str, place: tuple[float, ...]) -> None:
+        """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels)."""
+        self._hold("handle", self.sim.handles, name, place)
+
+    def click(self, name: str, ray: tuple[float, ...]) -> None:
+        """Take a click on a node of the scene: the origin and direction of its ray."""
+        self._hold("node to click", self.sim.clicks, name, ray)
+
+    def _hold(
+        self, kind: str, known: Mapping[str, Callable[..., Mapping[str, Any]]], name: str, place: tuple[float, ...]
+    ) -> None:
+        if (held := known.get(name)) is None:
+            raise Unknown(kind, name, known)
+        self._find(lambda: held(self.params, place, *self.given), self.change)
+
+    def select(self, name: str) -> None:
+        """Select what is linked under a name; nothing happens where that can't be selected."""
+        with suppress(ValidationError):
+            selected = self.params.changed({self.sim.selects: name})
+            self.motion.stop()
+            self._set(selected)
+
+    def act(self, name: str) -> None:
+        """Press a button: reset, or one of the sim's actions."""
+        self.motion.stop()
+        if name == "reset":
+            self._set(self.initial)
+            return
+        action = next((a for a in self.sim.actions if a.name == name), None)
+        if action is None:
+            raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
+        self._find(lambda: action.run(self.params, *self.given), self._take)
+
+    def _take(self, result: Mapping[str, Any] | Iterator[Step]) -> None:
+        """Take what an action leads to."""
+        if isinstance(result, Mapping):
+            self._set(self.params.changed(result))
+        else:
+            self.motion.begin(result)
+
+    def _find(self, find: Callable[[], Any], take: Callable[[Any], None]) -> None:
+        if self.sim.heavy:
+            self._looking_up.ask(find, take)
+        else:
+            take(find())
+
+    def upload(self, known_as: str, size: int, changes: Mapping[str, Any]) -> None:
+        """Show a file of some bytes that the library has taken, in place of the one before."""
+        self.forget(self.uploaded)
+        self.uploaded, self.uploaded_bytes = known_as, size
+        self.motion.stop()
+        self._set(self.params.moved(changes))
+
+    def forget(self, known_as: str) -> None:
+        """Have the library forget an uploaded file."""
+        if self.library is not None:
+            self.library.remove(known_as)
+
+    def cancel(self) -> None:
+        """Give up the work that the pool does: back to the state that is drawn."""
+        if (work := self.drawing.work) is not None:
+            self.motion.stop()
+            work.cancelled = True
+            self._set(self.drawing.before)
+            self.drawing.soon()
+
+    def _set(self, params: Params) -> None:
+        if params == self.params:
+            return
+        self.params = params
+        self.version += 1
+        self.drawing.soon()
+
+    # ---- motion
+
+    async def _following(self, steps: Iterator[Step]) -> Step | None:
+        """The next step of a motion, found in the pool where that may take long."""
+        return await self._solver.run(next, steps, None) if self.sim.heavy else next(steps, None)
+
+    async def _show(self, changes: Mapping[str, Any]) -> None:
+        self._set(self.params.moved(changes))
+        if self.sim.heavy:  # what takes long is seen before the motion goes on
+            await self.drawing.drawn()
+
+    # ---- what goes wrong
+
+    def _failed(self, error: Exception) -> None:
+        self.telling.tell(error_message(self.sim, error))
+
+    def _not_solved(self, params: Params, error: Exception) -> None:
+        """A state has no solution: the one before stays."""
+        self._failed(error)
+        if self.params is params:
+            self.params = self.drawing.solved
+
+    # ---- those who look
+
+    def hover(self, name: str, by: Listener | None = None) -> None:
+        """Highlight for everybody what somebody hovers over in a picture or table; an empty name is nothing."""
+        self._highlight.show(name, self.drawing.viewers, by)
+
+    def join(self, viewer: Viewer) -> None:
+        """Add a viewer and show it the present state."""
+        self.drawing.join(viewer)
+
+    def listen(self, listener: Listener) -> None:
+        """Add a channel."""
+        self.telling.listeners.add(listener)
+
+    def leave(self, viewer: Viewer | None = None, listener: Listener | None = None) -> None:
+        """Forget a viewer or a channel."""
+        if viewer is not None:
+            self.drawing.viewers.discard(viewer)
+        if listener is not None:
+            self.telling.listeners.discard(listener)
+            self._highlight.left(listener, self.drawing.viewers)
+        if not self.occupied:
+            self.left_at = time.monotonic()
+            self.motion.stop()
+
+    @property
+    def occupied(self) -> bool:
+        """Somebody looks at it."""
+        return bool(self.drawing.viewers or self.telling.listeners)
+
+    def state(self) -> Message:
+        """The state message for pages."""
+        return self._state(self.params)
+
+    async def solved_state(self) -> Message:
+        """The same with the solution, once the newest state is solved; both are of the state that is solved."""
+        await self.drawing.drawn(SOLVED_WITHIN)
+        solution = None if self.solution is None else jsonable(self.solution)
+        return {**self._state(self.drawing.solved), "solution": solution}
+
+    def _state(self, params: Params) -> Message:
+        words = "" if self.solution is None else self.sim.describe(self.drawing.solved, self.solution)
+        return {
+            "type": "state", "version": self.version, "params": params.model_dump(mode="json"),
+            "query": params.query(), "text": words,
+        }  # fmt: skip
+
+    # ---- its tasks
+
+    def _tasks(self) -> list[asyncio.Task[None]]:
+        return [task for task in (self._looking_up.task, self.drawing.task) if task is not None]
+
+    async def settled(self) -> None:
+        """Wait until nothing is looked up and the newest state is drawn. A motion goes on meanwhile."""
+        while tasks := self._tasks():
+            await asyncio.wait(tasks)
+
+    async def rested(self) -> None:
+        """Wait until no motion runs, and all is settled."""
+        await self.settled()
+        while (moving := self.motion.task) is not None:
+            await asyncio.wait([moving])
+        await self.settled()
+
+    def end(self) -> list[asyncio.Task[None]]:
+        """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
+        self.forget(self.uploaded)
+        self.telling.end()
+        working = self._tasks()
+        for task in working:
+            task.cancel()
+        self.motion.stop()
+        return working

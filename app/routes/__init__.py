@@ -1,0 +1,1 @@
+"""The addresses: pages, the API, files, websockets."""

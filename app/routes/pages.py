@@ -1,0 +1,155 @@
+"""The pages: launcher, lesson pages, the page of a room, and what these load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from fastapi import APIRouter, HTTPException, Request
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from fastapi.staticfiles import StaticFiles
+
+from app.rooms.keys import is_room, new_key, room_of
+from app.rooms.registry import Full, Sessions
+from app.rooms.session import Session
+from app.routes import links, rendering
+from app.routes.docs import described
+from app.routes.rendering import sim_or_404
+from app.routes.services import Given, Services
+from geometry import GeometryError
+from sims import SIMS
+from sims.kit import viser_client
+from sims.kit.params import Params
+from sims.kit.refusals import BadParams, Complaint
+from sims.kit.sim import Sim
+from sims.kit.spelling import clipped
+
+AnySim = Sim[Any, Any]
+FOR_EVER = {"access-control-allow-origin": "*", "cache-control": "public, max-age=31536000, immutable"}
+"""For what never changes under its address, also in frames that are sandboxed into an origin of their own."""
+FULL = 60
+"""Seconds after which a full server may have room again."""
+router = APIRouter(include_in_schema=False)
+
+
+class Static(StaticFiles):
+    """Our own files, whose addresses carry their fingerprints."""
+
+    def file_response(self, *args: Any, **kwargs: Any) -> Response:
+        response = super().file_response(*args, **kwargs)
+        response.headers.update(FOR_EVER)
+        return response
+
+
+def page(path: str) -> Callable[[Any], Any]:
+    """Registers who makes a page; HEAD is answered as GET is, but for the body."""
+    return router.api_route(path, methods=["GET", "HEAD"], response_class=HTMLResponse)
+
+
+@page("/")
+async def launcher(request: Request) -> Response:
+    return rendering.render(request, "launcher.html")
+
+
+@page("/sims")
+@page("/sims/")
+async def sims(request: Request) -> Response:
+    return RedirectResponse(f"{rendering.base(request)}/")
+
+
+@page("/docs")
+async def docs(request: Request) -> Response:
+    return rendering.render(request, "docs.html", described=described())
+
+
+@page("/sims/{slug}")
+async def lesson(request: Request, slug: str) -> Response:
+    sim = sim_or_404(slug)
+    given = request.query_params.multi_items()
+    links.read(sim, given)
+    return rendering.render(request, "sim.html", sim=sim, query=links.own(given))
+
+
+@page("/sims/{slug}/embed")
+async def embed(request: Request, given: Given, slug: str) -> Response:
+    sim = sim_or_404(slug)
+    key = new_key()
+    return _joined(request, given, sim, room_of(key), key)
+
+
+@page("/sims/{slug}/s/{room}/{key}/")
+async def controlled(request: Request, given: Given, slug: str, room: str, key: str) -> Response:
+    sim = sim_or_404(slug)
+    if room_of(key) != room:
+        raise HTTPException(404, "This link's key doesn't fit its room.")
+    return _joined(request, given, sim, room, key)
+
+
+def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str) -> Response:
+    """The page of a room, with control of it."""
+    query = request.query_params.multi_items()
+    params = links.read(sim, query)
+    if request.method != "HEAD":  # nobody is there to use a session
+        try:
+            params = _opened(given.sessions, sim, room, params, changes=bool(links.parts(query).params)).params
+        except GeometryError as error:  # of what no parameter's bounds exclude
+            wrong = Complaint(error.argument, clipped(error.received), error.allowed)
+            good = {name: text for name, text in params.query_items().items() if name != error.argument}
+            raise BadParams([wrong], good) from None
+    return rendering.viewer(request, sim, params, given.largest, room, key)
+
+
+def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
+    known = sessions.find(sim, room)
+    try:
+        session = sessions.open(sim, room, params)
+    except Full:
+        words = "All places on this server are taken; try again in a minute."
+        raise HTTPException(503, words, {"retry-after": str(FULL)}) from None
+    if known and changes:
+        session.change(params.model_dump(), live=False)
+    return session
+
+
+@page("/sims/{slug}/s/{room}/")
+async def watched(request: Request, given: Given, slug: str, room: str) -> Response:
+    if not is_room(room):
+        raise HTTPException(404, "There is no such room.")
+    sim = sim_or_404(slug)
+    known = given.sessions.find(sim, room)
+    return rendering.viewer(request, sim, known.params if known else sim.params(), given.largest, room)
+
+
+@page("/viser/{fingerprint}/{name}")
+async def client(request: Request, fingerprint: str, name: str) -> Response:
+    if fingerprint != viser_client.fingerprint() or name not in viser_client.files():
+        raise HTTPException(404, "There is no such file.")
+    kind = "text/css" if name.endswith(".css") else "text/javascript"
+    plain, zipped = rendering.client_file(name)
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(plain, media_type=kind, headers={**FOR_EVER, "vary": "accept-encoding"})
+    headers = {**FOR_EVER, "vary": "accept-encoding", "content-encoding": "gzip"}
+    return Response(zipped, media_type=kind, headers=headers)
+
+
+# Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.
+@page("/sims/{slug}/s/{room}/{key}")
+@page("/sims/{slug}/s/{room}")
+async def with_slash(request: Request) -> Response:
+    return _redirect(request, request.scope["path"] + "/")
+
+
+@page("/sims/{slug}/")
+@page("/sims/{slug}/embed/")
+@page("/docs/")
+async def without_slash(request: Request) -> Response:
+    return _redirect(request, request.scope["path"].rstrip("/"))
+
+
+def _redirect(request: Request, path: str) -> Response:
+    return RedirectResponse(f"{path}?{request.url.query}" if request.url.query else path)
+
+
+@router.api_route("/healthz", methods=["GET", "HEAD"])
+async def healthz(given: Given) -> dict[str, Any]:
+    return {"status": "ok", "sims": len(SIMS), "sessions": len(given.sessions)}

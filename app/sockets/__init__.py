@@ -1,0 +1,1 @@
+"""Websockets: what may come through them, and what becomes of it."""

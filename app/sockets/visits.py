@@ -1,0 +1,99 @@
+"""Pages that look at rooms: each by two websockets, viser's own and the channel.
+
+Both carry the viewer's name in their query, which pairs them: the channel says what the page looks like and which
+state it holds (so that a restarted server can go on), and only then is the scene drawn.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from app.sockets import origins
+from app.sockets.channel_messages import Hello
+from app.sockets.commands import Answer
+from sims.kit.sim import Sim
+from sims.kit.viewer import Viewer
+
+log = logging.getLogger("sim3")
+WRONG_ORIGIN = 4403
+"""Code with which a websocket is closed whose page comes from elsewhere, as far as the server can see."""
+MOST_WARNINGS = 100
+"""Different refusals that the log tells of."""
+
+
+@dataclass
+class Visit:
+    """One page looking at one room, by its two websockets; they share what the channel said first."""
+
+    sim: Sim[Any, Any]
+    room: str
+    watching: bool
+    name: str = ""
+    sockets: int = 0
+    viewer: Viewer | None = None
+    tell: Answer = lambda message: None
+    """Says something on the channel, once there is one."""
+    asking: asyncio.Task[None] | None = None
+    """Waits for a solution that the page wants."""
+    hello: asyncio.Future[Hello] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
+
+
+class Visits:
+    """The pages that are open. Refusals are counted; those for a page's origin are logged, each once."""
+
+    def __init__(self, refusals: Counter[str], further: str) -> None:
+        self._refusals = refusals
+        self._further = {origins.parse(text) for text in further.split()}
+        self._open: dict[str, Visit] = {}
+        self.warned: set[str] = set()
+
+    def __len__(self) -> int:
+        return len(self._open)
+
+    @contextlib.contextmanager
+    def enter(self, ws: WebSocket, sim: Sim[Any, Any], room: str, watching: bool) -> Iterator[Visit]:
+        """The visit that a socket belongs to; the first of its two sockets begins it, the last one ends it."""
+        name = ws.query_params.get("viewer", "")
+        name = f"{sim.slug}/{room}/{watching}/{name}" if re.fullmatch(r"[a-z0-9]{8,40}", name) else ""
+        visit = self._open.get(name) or Visit(sim, room, watching, name)
+        if name:
+            self._open[name] = visit
+        visit.sockets += 1
+        try:
+            yield visit
+        finally:
+            visit.sockets -= 1
+            if not visit.sockets:
+                self._open.pop(visit.name, None)
+
+    async def may(self, ws: WebSocket, protocol: str | None = None) -> bool:
+        """Whether the page may open a websocket; if not, it is told why. The key in the path is the secret.
+
+        A browser shows a page nothing of a websocket that isn't accepted, so it is, and closed with a reason.
+        """
+        wrong = origins.mismatch(ws.headers, ws.url.scheme == "wss", self._further)
+        if wrong is None:
+            return True
+        self._refusals["origin"] += 1
+        if (line := wrong.line()) not in self.warned and len(self.warned) < MOST_WARNINGS:
+            self.warned.add(line)  # once: pages try again every second
+            log.warning("a websocket was refused. %s", line)
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            await ws.accept(subprotocol=protocol)
+            await ws.close(WRONG_ORIGIN, wrong.reason())
+        return False
+
+
+async def close(ws: WebSocket, code: int) -> None:
+    """Close a websocket that may be closed already."""
+    with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+        await ws.close(code)
