@@ -132,6 +132,13 @@ async def client(request: Request, fingerprint: str, name: str) -> Response:
     return Response(zipped, media_type=kind, headers=headers)
 
 
+@page("/viewer/{fingerprint}/{name}")
+async def script(request: Request, fingerprint: str, name: str) -> Response:
+    if fingerprint != rendering.modules_fingerprint() or name not in rendering.modules():
+        raise HTTPException(404, "There is no such file.")
+    return Response(rendering.modules()[name], media_type="text/javascript", headers=FOR_EVER)
+
+
 # Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.
 @page("/sims/{slug}/s/{room}/{key}")
 @page("/sims/{slug}/s/{room}")

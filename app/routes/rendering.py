@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
+from dataclasses import asdict
 from typing import Any
 
 from fastapi import HTTPException, Request
@@ -14,6 +15,7 @@ from starlette.templating import Jinja2Templates
 from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
+from sims.kit.layout import LAYOUT
 from sims.kit.palette import DARK
 from sims.kit.params import Params
 from sims.kit.sim import Sim
@@ -40,11 +42,29 @@ def static(request: Request, name: str) -> str:
     return f"{base(request)}/static/{name}?v={fingerprint(name)}"
 
 
+@functools.cache
+def modules() -> dict[str, bytes]:
+    """The scripts of a sim's page by their names: those that begin, and the modules that import each other."""
+    return {path.name: path.read_bytes() for path in sorted((ROOT / "static" / "viewer").glob("*.js"))}
+
+
+@functools.cache
+def modules_fingerprint() -> str:
+    """Changes when any of them does; it stands in their addresses, so that what they import is as new as they are."""
+    return hashlib.sha256(b"".join(modules().values())).hexdigest()[:10]
+
+
+def module(request: Request, name: str) -> str:
+    """Address of a script of a sim's page."""
+    return f"{base(request)}/viewer/{modules_fingerprint()}/{name}"
+
+
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
     """An HTML page from a template."""
     shared = {
         "base": base(request),
         "static": functools.partial(static, request),
+        "module": functools.partial(module, request),
         "sims": SIMS,
         "status": status,
     }
@@ -66,13 +86,11 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: st
         "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
         "files": None if sim.files is None else {"largest": largest},
         "label": {"ink": DARK.ink, "plate": DARK.page},
-        "scripts": [
-            {"src": f"{client}/loader.js", "crossOrigin": "anonymous", "async": False},
-            {"src": static(request, "sim.js"), "type": "module", "async": False},
-        ],
+        "layout": asdict(LAYOUT),
+        "main": module(request, "main.js"), "client": f"{client}/loader.js",
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
-    response = render(request, "viewer.html", sim=sim, data=data, client=client)
+    response = render(request, "viewer.html", sim=sim, data=data, client=client, modules=modules())
     response.headers["cache-control"] = "no-store"
     return response
 

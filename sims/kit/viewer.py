@@ -16,6 +16,7 @@ import viser
 from geometry import GeometryError
 from sims.kit import pane, readout
 from sims.kit.controls import Control, TypedPlace, controls, worded
+from sims.kit.layout import LAYOUT
 from sims.kit.offers import Offers
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
@@ -25,12 +26,6 @@ from sims.kit.types import Place
 from sims.kit.viser_internals import control_id, received, set_property
 
 ACCENT = (11, 95, 215)
-NARROW, PHONE = 900, 576
-"""Pixels of a page's width below, and up to, which there is less room."""
-PICTURES = 330
-"""Pixels that the panel of the pictures is wide."""
-LOW = 500
-"""Pixels of a page's height below which a bottom sheet has room for one thing."""
 FARTHEST = 1e4
 """Metres that a viewpoint may be away."""
 
@@ -62,15 +57,15 @@ class Look:
 
     @property
     def narrow(self) -> bool:
-        return self.width < NARROW
+        return self.width < LAYOUT.narrow
 
     @property
     def phone(self) -> bool:
-        return self.width <= PHONE
+        return self.width <= LAYOUT.phone
 
     @property
     def low(self) -> bool:
-        return self.height < LOW
+        return self.height < LAYOUT.low
 
 
 class Input(NamedTuple):
@@ -197,13 +192,13 @@ class Viewer:
 
     @property
     def _panel(self) -> int:
-        return 300 if self.look.narrow else 340
+        return LAYOUT.narrow_panel if self.look.narrow else LAYOUT.panel
 
     def _docked(self) -> int:
         """Pixels that panels take of the width."""
         if self.look.phone:
             return 0
-        pictures = PICTURES if self.sim.panes is not None and not self.look.narrow else 0
+        pictures = LAYOUT.pictures if self.sim.panes is not None and not self.look.narrow else 0
         return pictures + (self._panel if self.look.controls else 0)
 
     def _dock(self) -> None:
@@ -225,7 +220,7 @@ class Viewer:
             panel.dock_above(self.client.gui.main_panel)
         else:
             panel.dock_left()
-            panel.set_width(PICTURES)
+            panel.set_width(LAYOUT.pictures)
         return html
 
     def _add_controls(self, offers: Offers[Any]) -> None:

@@ -98,7 +98,7 @@ def test_the_api_asks_what_was_meant_too(http: httpx.Client) -> None:
 @pytest.mark.parametrize(
     "path",
     ["/", "/sims", "/sims/camera", "/sims/camera/embed?fx=700", "/docs", "/openapi.json", "/healthz", "/api/sims",
-     "/api/sims/camera", "/static/sim.js", "/sims/nothing", "/sims/camera?fx=x"],
+     "/api/sims/camera", "/static/page.js", "/sims/nothing", "/sims/camera?fx=x"],
 )  # fmt: skip
 def test_head_answers_as_get_does_without_a_body_or_a_session(local: Local, path: str) -> None:
     before = local.sessions

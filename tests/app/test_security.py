@@ -30,7 +30,7 @@ ADDRESSES = {
     "without slash": (f"/sims/{SLUG}/s/{ROOM}/{KEY}", 307),
     "catalogue": ("/api/sims", 200),
     "health": ("/healthz", 200),
-    "static": ("/static/sim.js", 200),
+    "static": ("/static/page.js", 200),
     "bad link": (f"/sims/{SLUG}?yaw=x", 422),
     "no such sim": ("/sims/nothing", 404),
     "no such page": ("/nothing", 404),

@@ -30,7 +30,9 @@ def course() -> Iterator[CourseSite]:
 def looks_as_it_should(learner: Learner) -> bool:
     """Whether viser's own camera is where the page works out that it should be."""
     camera = learner.sockets.camera
-    view = np.array(learner.frame.evaluate("sim3.fit()"))
+    view = np.array(
+        learner.frame.evaluate("import(sim3.main.replace('main.js', 'view.js')).then((view) => view.fit())")
+    )
     assert np.isfinite(view).all()
     return bool(np.allclose([*camera["position"], *camera["look_at"]], view, atol=0.02))
 

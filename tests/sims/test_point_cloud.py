@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from geometry import clouds, se3
+from sims.kit.layout import LAYOUT
 from sims.kit.palette import before_film, before_tone_mapping
 from sims.kit.viewer import Look
 from sims.point_cloud import SIM, CloudParams, derived, processes, solve
@@ -222,10 +223,10 @@ def test_another_cloud_fits_between_the_panels(look: Look, share: float) -> None
             np.array(rig.model.latest[f"SetCamera{what}Message"][name])
             for what, name in (("Position", "position"), ("LookAt", "look_at"))
         )
-    half = np.arctan(np.tan(0.35) * min(1.0, share) * (0.55 if look.phone else 1.0))
+    half = np.arctan(np.tan(LAYOUT.field / 2) * min(1.0, share) * (LAYOUT.sheet if look.phone else 1.0))
     view = VIEWS["statue"]
     assert np.linalg.norm(position - middle) * np.sin(half) == pytest.approx(view.radius)
-    np.testing.assert_allclose(middle, np.subtract(view.look_at, (0.0, 0.0, 0.75 * view.radius * look.phone)))
+    np.testing.assert_allclose(middle, np.subtract(view.look_at, (0.0, 0.0, LAYOUT.lower * view.radius * look.phone)))
 
 
 # ---- picking

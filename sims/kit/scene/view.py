@@ -7,12 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sims.kit.layout import LAYOUT
 from sims.kit.types import Vector
-
-FIELD = 0.7
-"""Vertical field of view in radians, as boot.js sets it."""
-SHEET = 0.55
-"""Share of a phone's height that viser's bottom sheet leaves free."""
 
 
 def look(camera: Any, position: Vector, look_at: Vector, radius: float, *, width: float, phone: bool) -> None:
@@ -20,12 +16,12 @@ def look(camera: Any, position: Vector, look_at: Vector, radius: float, *, width
 
     `width`: pixels that panels leave to the scene.
     """
-    seen = SHEET if phone else 1.0  # of the height; boot.js does the same for the first view
+    seen = LAYOUT.sheet if phone else 1.0  # of the height; static/viewer/view.js does the same for the first view
     height = camera.image_height or 1  # a frame that is hidden again has none
     aspect = (min(camera.image_width, width) or 1) / (seen * height)
-    half = math.tan(0.5 * FIELD) * min(1.0, aspect) * seen
+    half = math.tan(0.5 * LAYOUT.field) * min(1.0, aspect) * seen
     away = np.subtract(position, look_at)
     away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))
-    middle = np.subtract(look_at, (0.0, 0.0, 0.75 * radius if phone else 0.0))
+    middle = np.subtract(look_at, (0.0, 0.0, LAYOUT.lower * radius if phone else 0.0))
     camera.position = middle + away
     camera.look_at = middle

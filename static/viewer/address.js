@@ -1,0 +1,37 @@
+// Keeps the address equal to the state. What it must not hold stays beside it: the room, for a reload, and the state
+// that Reset leads back to.
+import { Query, sim } from "./page.js";
+
+const OPTIONS = ["view", "controls", "theme"];
+
+export class Address {
+  constructor() {
+    this.options = new Query();
+    for (const [name, value] of new Query(sim.search)) if (OPTIONS.includes(name)) this.options.append(name, value);
+    this.opened = stateQuery(sim.opened);
+    this.query = stateQuery(sim.search);
+  }
+
+  show() {
+    try {
+      history.replaceState({ path: sim.path, opened: this.opened }, "", this.of(sim.address));
+    } catch { /* some browsers let a sandboxed frame change no more than its query */ }
+  }
+
+  // A path with the state and this page's options.
+  of(path) {
+    const search = [this.query, this.options.toString().replaceAll("%2C", ",")].filter(Boolean).join("&");
+    return path + (search ? "?" + search : "");
+  }
+
+  // A link that opens the sim in this state, in a room of its own.
+  get shared() {
+    return new URL(this.of(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, "/embed")), location.href).href;
+  }
+}
+
+function stateQuery(search) {
+  const given = new Query(search);
+  for (const name of OPTIONS) given.delete(name);
+  return given.toString();
+}

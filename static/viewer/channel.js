@@ -1,0 +1,37 @@
+// The channel to the server: JSON both ways. It is opened anew whenever it breaks off.
+import { reduced, sim } from "./page.js";
+
+const FIRST = 250;
+const LAST = 1500; // within the time that the server waits before it draws
+
+export class Channel {
+  // `greeting()` says what the page holds; `take` gets what comes, and `lost` the code and reason of a channel that ends.
+  constructor(greeting, take, lost) {
+    this.greeting = greeting;
+    this.take = take;
+    this.lost = lost;
+    this.socket = null;
+    this.retryAfter = FIRST;
+  }
+
+  open() {
+    this.socket = new WebSocket(`${sim.socket}channel?viewer=${sim.viewer}`);
+    this.socket.onopen = () => {
+      this.retryAfter = FIRST;
+      this.send({
+        type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth, height: innerHeight, ...this.greeting(),
+      });
+    };
+    this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
+    this.socket.onclose = (event) => {
+      this.socket = null;
+      this.lost(event.code, event.reason);
+      setTimeout(() => this.open(), this.retryAfter);
+      this.retryAfter = Math.min(this.retryAfter * 2, LAST);
+    };
+  }
+
+  send(message) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}

@@ -1,0 +1,73 @@
+// The page around the sim: what it is told, and what it asks for.
+import { embedded, sim } from "./page.js";
+
+export class Host {
+  constructor(channel, address) {
+    this.channel = channel;
+    this.address = address;
+    this.afterState = []; // what waits for the next state
+  }
+
+  post(message) {
+    this.postRaw({ slug: sim.slug, ...message });
+  }
+
+  postRaw(message) {
+    if (embedded) window.parent.postMessage(message, "*");
+  }
+
+  state({ params, query, solution }) {
+    this.post({ type: "sim3:state", params, query, ...(solution === undefined ? {} : { solution }) });
+    this.afterState.splice(0).forEach((then) => then());
+  }
+
+  listen(view, height) {
+    addEventListener("message", ({ source, data }) => {
+      if (source !== window.parent || !embedded || typeof data !== "object" || data === null) return;
+      const { type, name, solution } = data;
+      if (type === "sim3:set") this.set(data, view);
+      else if (type === "sim3:action") this.channel.send({ type: "action", name });
+      else if (type === "sim3:get") this.channel.send({ type: "get", ...(solution ? { solution: true } : {}) });
+      else height.hear(data);
+    });
+  }
+
+  set({ params, seconds, theme, controls, view: wanted }, view) {
+    const page = theme !== undefined || controls !== undefined || wanted !== undefined;
+    if (params !== undefined || !page) {
+      this.channel.send({ type: "set", params, ...(seconds === undefined ? {} : { seconds }) });
+    }
+    if (!page) return;
+    if (isView(wanted)) view.choose(wanted);
+    else if (wanted !== undefined) this.refuse("view", wanted, "six numbers: viewpoint x, y, z and look-at x, y, z");
+    this.setPage(theme, controls);
+  }
+
+  // The theme and the controls are the server's work too: the page begins anew with them, in its room, once the server
+  // has what else was set.
+  setPage(theme, controls) {
+    const wanted = {};
+    if (theme === "light" || theme === "dark") wanted.theme = theme;
+    else if (theme !== undefined) this.refuse("theme", theme, "light or dark");
+    if (typeof controls === "boolean") wanted.controls = controls ? "1" : "0";
+    else if (controls !== undefined) this.refuse("controls", controls, "true or false");
+    const { options } = this.address;
+    const now = { theme: sim.dark ? "dark" : "light", controls: options.get("controls") ?? "1" };
+    const anew = Object.entries(wanted).filter(([name, value]) => value !== now[name]);
+    for (const [name, value] of anew) options.set(name, value);
+    this.address.show();
+    if (!anew.length) return;
+    this.afterState.push(() => location.reload());
+    this.channel.send({ type: "get" });
+  }
+
+  refuse(parameter, received, allowed) {
+    const errors = [{ parameter, received: JSON.stringify(received) ?? "nothing", allowed }];
+    this.post({ type: "sim3:error", message: `${parameter}: got ${errors[0].received}, allowed: ${allowed}`, errors });
+  }
+}
+
+function isView(view) {
+  return Array.isArray(view) && view.length === 6 && view.every((v) => typeof v === "number" && Math.abs(v) < 1e4)
+    && view.slice(0, 3).some((v, i) => v !== view[i + 3]);
+}

@@ -1,0 +1,67 @@
+// The buttons that every sim has: share, save the picture, keys, downloads.
+import { element, sim } from "./page.js";
+import { sceneCanvas } from "./viser_dom.js";
+
+export class Toolbar {
+  constructor(address, words, files) {
+    this.address = address;
+    this.words = words;
+    const does = {
+      share: () => this.share(),
+      picture: savePicture,
+      keys: showKeys,
+      download: (button) => download(`${sim.place}result/${button.value}`, button.value),
+      "give-up": () => files.giveUp(),
+      close: (button) => button.closest("dialog").close(),
+    };
+    document.addEventListener("click", (event) => does[event.target.closest?.("[data-s3]")?.dataset.s3]?.(event.target));
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "?" && !/^(INPUT|TEXTAREA)$/.test(event.target.tagName)) showKeys();
+    }, true);
+  }
+
+  async share() {
+    const link = this.address.shared;
+    try {
+      // Frames of other sites may not; asking all the same would leave an error in the console.
+      if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
+      await navigator.clipboard.writeText(link);
+      this.words.notify("Link copied. It opens this sim in exactly this state.");
+    } catch {
+      dialog("Link to this state", '<p><input class="s3-link" readonly aria-label="Link" value=""></p>');
+      const field = document.querySelector(".s3-link");
+      field.value = link;
+      field.select();
+    }
+  }
+}
+
+function savePicture() {
+  const canvas = sceneCanvas();
+  requestAnimationFrame(() => download(canvas.toDataURL("image/png"), `${sim.slug}.png`));
+}
+
+function download(href, name) {
+  const link = element("a", { href, download: name });
+  link.click();
+  link.remove();
+}
+
+function dialog(title, html) {
+  document.querySelector("dialog.s3-dialog")?.remove();
+  const box = element("dialog", { class: "s3-dialog", "aria-label": title });
+  box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close">Close</button>`;
+  box.showModal();
+}
+
+function showKeys() {
+  dialog("Keys", `<table>
+    <tr><th scope="row"><kbd>Tab</kbd></th><td>next control or point</td></tr>
+    <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> on a slider</th><td>one step</td></tr>
+    <tr><th scope="row">arrow keys on a point in a picture</th><td>one pixel; with <kbd>Shift</kbd> ten, with <kbd>Alt</kbd> a tenth</td></tr>
+    <tr><th scope="row">click, or <kbd>Enter</kbd>, on a picture</th><td>choose a pixel, where the sim has something to say of it</td></tr>
+    <tr><th scope="row">drag in the scene</th><td>turn the view; right button moves it, wheel zooms</td></tr>
+    <tr><th scope="row">drag a ringed point</th><td>move it; with <kbd>Shift</kbd> along one axis</td></tr>
+    <tr><th scope="row">point at, or click, a point or its row</th><td>light it up, or select it, everywhere</td></tr>
+    <tr><th scope="row"><kbd>?</kbd></th><td>these keys</td></tr></table>`);
+}

@@ -1,0 +1,53 @@
+// No connection: after a while in words, for whoever runs the server.
+import { element, sim } from "./page.js";
+
+const PATIENCE = 5000;
+const REFUSED = 4403; // the server says what is wrong with what it saw
+
+export class Trouble {
+  constructor() {
+    this.missing = 0;
+    this.why = "";
+    this.known = false; // whether there ever was a state
+  }
+
+  lost(code, reason) {
+    this.why = (code === REFUSED && reason) || this.why;
+    if (code === REFUSED && reason) this.show();
+    else this.missing ||= setTimeout(() => this.show(), PATIENCE);
+  }
+
+  found() {
+    this.known = true;
+    clearTimeout(this.missing);
+    this.missing = 0;
+    this.why = "";
+    document.querySelector(".s3-trouble")?.remove();
+  }
+
+  show() {
+    const box = document.querySelector(".s3-trouble") ?? element("section", { class: "s3-trouble", role: "alert" });
+    const words = this.known ? interrupted(this.why) : unreachable(this.why);
+    if (box.textContent === words.map(([, text]) => text).join("")) return;
+    box.replaceChildren();
+    for (const [tag, text] of words) if (text) element(tag, {}, box).textContent = text;
+  }
+}
+
+function interrupted(why) {
+  return [
+    ["h2", "The connection to the server is lost"],
+    ["p", "It tries again by itself, and goes on where you are."],
+    ["p", why],
+  ];
+}
+
+function unreachable(why) {
+  const blocked = `The page came, but the websocket to ${new URL(sim.place).host} doesn’t open. A proxy on the way must let `
+    + "websockets through (Upgrade and Connection), and hand on the Host that the browser asked for.";
+  return [
+    ["h2", "This sim can’t reach its server"],
+    ["p", "It tries again by itself. If it stays like this, tell whoever runs the server:"],
+    ["p", why || blocked],
+  ];
+}

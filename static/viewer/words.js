@@ -1,0 +1,33 @@
+// The page's words: its heading, what is spoken of a change, and notices for a moment.
+import { element, sim } from "./page.js";
+import { describeScene } from "./viser_dom.js";
+
+const REST = 700; // milliseconds without a change before it is spoken
+const SEEN = 6000;
+
+export class Words {
+  constructor() {
+    element("h1", {}, element("header", { class: "s3-hidden" })).textContent = sim.title;
+    this.live = element("div", { "aria-live": "polite", role: "status", class: "s3-hidden" });
+    this.notice = element("div", { role: "alert", class: "s3-notice", hidden: "" });
+    this.speaking = 0;
+    this.hiding = 0;
+  }
+
+  speak(text) {
+    clearTimeout(this.speaking);
+    this.speaking = setTimeout(() => (this.live.textContent = text), REST);
+    this.describe(text);
+  }
+
+  describe(text) {
+    describeScene(`${sim.title}, 3D scene. ${text}`);
+  }
+
+  notify(text) {
+    this.notice.textContent = text;
+    this.notice.hidden = false;
+    clearTimeout(this.hiding);
+    this.hiding = setTimeout(() => (this.notice.hidden = true), SEEN);
+  }
+}
