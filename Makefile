@@ -28,7 +28,7 @@ help:
 	@echo "make run     serve the sims at http://$(SIM3_HOST):$(SIM3_PORT)/"
 	@echo "make test    run all tests, those in a browser too (ARGS='-k name' for some)"
 	@echo "make fuzz    try the properties with other examples than make test does (ARGS='-k name' for some)"
-	@echo "make check   lint, format, types, import direction"
+	@echo "make check   lint (Python, JavaScript, CSS, templates), format, types, import direction"
 	@echo "make bench   measure speed, beside Open3D where that can be installed"
 	@echo "make shots   take screenshots"
 	@echo "make lock    choose dependency versions anew"
@@ -55,7 +55,9 @@ check: $(VENV)/test.stamp
 	@$(BIN) -m ruff check
 	@$(BIN) -m ruff format --check
 	@$(BIN) -m mypy
-	@$(BIN) -m pytest --quiet tests/test_imports.py tests/sims/test_rooms.py
+	@$(VENV)/bin/oxlint --deny-warnings static
+	@$(BIN) -m djlint --quiet --lint app/templates
+	@$(BIN) -m pytest --quiet tests/test_imports.py tests/test_style_sheets.py tests/sims/test_rooms.py
 
 bench: $(BENCH)/bench.stamp
 	@$(BENCH)/bin/python -m tests.browser --ensure
