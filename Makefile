@@ -57,7 +57,8 @@ check: $(VENV)/test.stamp
 	@$(BIN) -m mypy
 	@$(VENV)/bin/oxlint --deny-warnings static
 	@$(BIN) -m djlint --quiet --lint app/templates
-	@$(BIN) -m pytest --quiet tests/test_imports.py tests/test_style_sheets.py tests/sims/test_rooms.py
+	@$(BIN) -m pytest --quiet tests/test_imports.py tests/test_style_sheets.py tests/test_words.py \
+		tests/sims/test_rooms.py
 
 bench: $(BENCH)/bench.stamp
 	@$(BENCH)/bin/python -m tests.browser --ensure

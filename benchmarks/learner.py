@@ -43,7 +43,7 @@ class Learner:
         self.ages: list[float] = []
         """Seconds from sending each value until that state or a later one came, in order."""
         self.delays: list[float] = []
-        """Of the values that were drawn: seconds from sending it until its own state came."""
+        """For each value that was drawn: seconds from sending it until its own state came."""
         self.late: list[float] = []
         """Seconds by which each value was sent too late."""
         self.backwards = 0

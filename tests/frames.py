@@ -96,7 +96,7 @@ class SceneNode:
 
     @property
     def rank(self) -> tuple[bool, bool]:
-        """Of several scopes' nodes of a name, the greatest is shown."""
+        """Where several scopes have a node of a name, the greatest is shown."""
         return not self.virtual, self.owner != ""
 
     @property

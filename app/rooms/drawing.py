@@ -38,7 +38,7 @@ class Drawing:
         self.sim = sim
         self.solved = params
         self.solution: Any = None if sim.heavy else sim.solve(params, *given)
-        """Of the state that is `solved`; None until what takes long is there."""
+        """The solution of the state that is `solved`; None until what takes long is there."""
         self.viewers: set[Viewer] = set()
         self.task: asyncio.Task[None] | None = None
         """As long as something is to be drawn."""

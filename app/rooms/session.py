@@ -61,7 +61,7 @@ class Session:
 
     @property
     def solution(self) -> Any:
-        """Of the newest state that is solved; None before there is one."""
+        """The solution of the newest state that is solved; None before there is one."""
         return self.drawing.solution
 
     def begin(self, params: Params, opened: Params) -> None:

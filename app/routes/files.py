@@ -17,7 +17,7 @@ from app.routes.services import Given
 from sims import by_slug
 
 ADDRESS = r"/sims/[a-z-]+/s/[0-9a-f]{20}/[\w-]{1,60}/file$"
-"""Of a POST that brings a file."""
+"""Address of a POST that uploads a file."""
 AT_ONCE = 4
 """Largest files that may be on their way at once."""
 KEPT = 10

@@ -72,7 +72,7 @@ class Conversation:
             visit.asking = asyncio.create_task(told())
 
     def _view(self, message: View) -> None:
-        """Of this page alone."""
+        """Move this page's own view."""
         if self._visit.viewer is not None:
             self._commands.attempt(self._visit.viewer.look_from, message.view, message.fit)
 

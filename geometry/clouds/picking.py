@@ -50,7 +50,7 @@ def pick(points: npt.ArrayLike, origin: npt.ArrayLike, direction: npt.ArrayLike,
 
 @np.errstate(invalid="ignore", over="ignore")
 def _inside(cloud: Array, first: int, frame: Array, start: Array, cone: float) -> tuple[Indices, Array, Array]:
-    """Of some rows, those in the cone, how far along the ray, and the square of how far from it."""
+    """Those of some rows that are in the cone, how far along the ray, and the square of how far from it."""
     across = frame @ cloud[first : first + _ROWS].T
     across -= (frame @ start)[:, None]
     along, right, off = across

@@ -70,7 +70,7 @@ def _point(picture: Picture, point: NamedPoint, *, chosen: bool) -> None:
 
 
 def _note(p: CameraParams, s: CameraSolution) -> str:
-    """Of the chosen point; short, so that the picture below keeps its place."""
+    """Words on the chosen point; short, so that the picture below keeps its place."""
     point = s.point(p.selected)
     if s.frustum is None:
         return "⚠ no scale, no picture"

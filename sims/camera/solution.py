@@ -104,9 +104,9 @@ class Frustum:
     """What the picture can show of space, and the picture as it stands there; all in the camera's axes, in metres."""
 
     depth: float
-    """Of the picture."""
+    """How far the picture is away."""
     corners: Array
-    """Of the picture (4, 3): top left, top right, bottom right, bottom left."""
+    """Corners of the picture (4, 3): top left, top right, bottom right, bottom left."""
     back: Array
     """Where the lines of sight through them come from (4, 3): the centre, or the camera's plane."""
     far: Array | None
@@ -133,7 +133,7 @@ LIFT = 0.6
 """Metres by which the grip that moves the camera stands above it."""
 BEYOND = 0.5
 """Metres by which the grip that turns the camera stands farther away than the picture."""
-WAYS: Array = np.array([way for _, way in DIRECTIONS.values()])
+DIRECTION_VECTORS: Array = np.array([way for _, way in DIRECTIONS.values()])
 FOLLOWED: Array = np.concatenate([POINTS, [MIDDLE, *SUBJECT]])
 """Named points, and of the subject middle, ground and ridge."""
 CORNERS: Array = np.array([(-0.5, -0.5), (WIDTH - 0.5, -0.5), (WIDTH - 0.5, HEIGHT - 0.5), (-0.5, HEIGHT - 0.5)])
@@ -219,7 +219,7 @@ def _decomposed(camera: Camera) -> Decomposed:
 
 
 def _vanishing(P: Array) -> tuple[VanishingPoint, ...]:
-    homogeneous, pixels = vanishing_points(P, WAYS)
+    homogeneous, pixels = vanishing_points(P, DIRECTION_VECTORS)
     rows = zip(DIRECTIONS.items(), homogeneous.tolist(), pixels.tolist(), strict=True)
     return tuple(
         VanishingPoint(

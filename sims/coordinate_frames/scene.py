@@ -17,7 +17,7 @@ from sims.kit.scene.stage import Stage
 from sims.kit.types import IDENTITY, ORIGIN, Quaternion
 
 LENGTH, GHOST_LENGTH = 1.25, 1.52
-"""Of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
+"""Lengths of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
 
 
 class FramesScene:

@@ -40,7 +40,7 @@ class CameraDrawing:
     stretch: Segment | None
     """The rest of the line, from the picture to the epipole."""
     all_lines: Segments
-    """Of the other points."""
+    """Lines of the other points."""
     picked_line: Segment | None
     epipole: Place | None
 
@@ -67,7 +67,7 @@ def distance(focal: float, size: float) -> float:
 
 @lru_cache(maxsize=256)
 def corners(focal: float, size: float) -> Array:
-    """Of a picture, (4, 3), in its camera's axes."""
+    """Corners of a picture, (4, 3), in its camera's axes."""
     upright = Camera.from_intrinsics(focal, focal, *CENTER, T_camera_world=np.eye(4))
     return upright.frustum_corners(WIDTH, HEIGHT, distance(focal, size))
 

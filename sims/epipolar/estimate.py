@@ -73,5 +73,5 @@ def _rms(F: Array, left: Array, right: Array) -> float:
 
 
 def _difference(matrix: Array, other: Array) -> float:
-    """Of two matrices that are defined up to sign."""
+    """How far two matrices are apart that are defined up to sign."""
     return min(float(np.linalg.norm(matrix - other)), float(np.linalg.norm(matrix + other)))

@@ -45,7 +45,7 @@ class EpipolarParams(Params):
     right_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Right pan")] = 0
     """Turn of the right camera about the vertical; positive is to its left"""
     focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
-    """Of both cameras"""
+    """The same for both cameras"""
     point: Annotated[Place, Vector((-5.0, -3.0, -2.0), (5.0, 12.0, 5.0), step=0.01, unit="m", title="3D point")] = POINT
     """The first point, which you can also drag in the scene: X, Y, Z"""
     points: Annotated[int, Slider(1, 12, step=1, title="Points")] = 6

@@ -27,7 +27,7 @@ class Pair:
     left: Camera
     right: Camera
     wxyz: tuple[Quaternion, Quaternion]
-    """Of the left and the right camera, in the world."""
+    """Orientations of the left and the right camera, in the world."""
     F: Array | None = None
     E: Array | None = None
     rank: int | None = None
@@ -60,7 +60,7 @@ def camera(center: Place, pan: float, focal: float) -> Camera:
 
 @lru_cache(maxsize=256)
 def _orientation(pan: float) -> Quaternion:
-    """Of a level camera that is turned by degrees about the vertical, in the world."""
+    """The axes of a level camera that is turned by degrees about the vertical, in the world."""
     turned = axis_rotation("z", math.radians(pan)) @ R_WORLD_LEVEL
     w, x, y, z = quaternion.from_matrix(turned).tolist()
     return w, x, y, z

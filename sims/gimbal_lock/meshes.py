@@ -16,9 +16,9 @@ from sims.kit.scene.bodies import joined
 Profile = Sequence[tuple[float, float]]
 FULL = (0.0, 2.0 * math.pi)
 SECTIONS = 72
-"""Of a full turn."""
+"""Parts of a full turn."""
 DEPTH, WIDTH, CHAMFER = 0.08, 0.115, 0.016
-"""Of every ring: metres along its radius, across its plane, and at its edges."""
+"""Thickness of every ring: metres along its radius, across its plane, and at its edges."""
 YOKE, FLOOR, SIDE = 1.42, -1.6, math.radians(200.0)
 """Radius of the stand's arm, height of its foot, and the direction of the arm from the middle."""
 

@@ -37,7 +37,7 @@ NEAR_TIP = (0.09, 0.0, 0.72 * LOST)
 SAME = 0.01
 """Degrees from the aircraft within which its ghost hides in it."""
 WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
-"""Of the axes' lines, in pixels: where two coincide, both are seen."""
+"""Widths of the axes' lines, in pixels: where two coincide, both are seen."""
 BEYOND = 0.07
 """How far beyond its axis a label stands, in metres."""
 CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)

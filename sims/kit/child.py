@@ -75,7 +75,7 @@ class ChildRefusal(ValueError):
 
 
 class ChildFailed(ValueError):
-    """The file couldn't be read for another reason, in words for whoever brought it."""
+    """The file couldn't be read for another reason, in words for whoever uploaded it."""
 
     def __init__(self, reason: str, words: str) -> None:
         super().__init__(words)

@@ -53,7 +53,7 @@ class Change(NamedTuple):
 
 
 class Outbox:
-    """Of messages about the same thing only the newest waits, in the order in which they last changed."""
+    """What waits: of messages about the same thing only the newest, in the order in which they last changed."""
 
     def __init__(self, send: Send, loop: asyncio.AbstractEventLoop) -> None:
         self._send = send

@@ -47,7 +47,7 @@ class Picture:
     def line(
         self, a: Point, b: Point, role: str, *, width: float = 2, dash: str = "", css: str = "", link: str = ""
     ) -> None:
-        """A straight stroke; `dash` as in SVG, `role` a colour of the palette. It lights up where `link` does."""
+        """A straight stroke; `dash` as in SVG, `role` a colour of the palette. It is highlighted where `link` is."""
         dashed = f' stroke-dasharray="{dash}"' if dash else ""
         self._parts.append(
             f'<line x1="{a[0]:.2f}" y1="{a[1]:.2f}" x2="{b[0]:.2f}" y2="{b[1]:.2f}" stroke="var(--{role})"'
@@ -118,7 +118,7 @@ class Picture:
     def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "") -> None:
         """A point that pointer and keyboard can move; the session hears of it under `name`.
 
-        `where` says its place where that isn't the pixel. It lights up with what else `link` is, and a click on it
+        `where` says its place where that isn't the pixel. It is highlighted with what else `link` is, and a click on it
         selects that.
         """
         x, y = float(at[0]), float(at[1])
@@ -140,9 +140,9 @@ class Picture:
         self, link: str, at: Point, title: str, role: str = "ink", *, chosen: bool = False, label: str = "",
         quiet: bool = False,
     ) -> None:  # fmt: skip
-        """A named point: where else `link` stands (table, other pictures) lights up with it, and a click selects it.
+        """A named point: where else `link` stands (table, other pictures) is highlighted too, and a click selects it.
 
-        A quiet one is only seen while it is lit.
+        A quiet one is only seen while it is highlighted.
         """
         kind = "s3-point s3-selected" if chosen else "s3-point s3-quiet" if quiet else "s3-point"
         ring = '<circle class="s3-ring" r="13"/>' if chosen else ""

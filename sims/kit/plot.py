@@ -12,7 +12,7 @@ from sims.kit.readout import figure
 
 WIDTH, HEIGHT = 320, 160
 LEFT, TOP, END, FLOOR = 44, 24, 306, 126
-"""Of the axes, in the picture."""
+"""Ends of the axes, in the picture."""
 
 
 def step(greatest: float, most: int = 6) -> float:

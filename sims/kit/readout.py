@@ -90,8 +90,8 @@ class Formula:
 class Table:
     """A small table of words and numbers; the first row is its head.
 
-    `links` names what each further row stands for: it lights up with its mark in the pictures, and is `selected` by
-    a click or by the button that its first cell becomes. `lights` does so for the rows after these, which only light
+    `links` names what each further row stands for: it is highlighted with its mark in the pictures, and is `selected`
+    by a click or by the button that its first cell becomes. `lights` does so for the rows after these, which only light
     up.
     """
 

@@ -43,7 +43,7 @@ class Step:
     changes: Mapping[str, Any]
     seconds: float
     even: bool = False
-    """At one speed: for the legs of a way that isn't straight, which is eased as a whole."""
+    """At one speed: for the legs of a path that isn't straight, which is eased as a whole."""
 
 
 @dataclass(frozen=True)

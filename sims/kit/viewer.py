@@ -238,7 +238,7 @@ class Viewer:
                         gui, offers, name, disabled=self.look.watching, listen=self._listen, change=self._host.change
                     )
                 if self.sim.files is not None and group == self.sim.files.group:
-                    gui.add_html(bring(self.sim.files.endings, disabled=self.look.watching))
+                    gui.add_html(upload(self.sim.files.endings, disabled=self.look.watching))
                 if not group:
                     self._places = [self._typed(typed) for typed in self.sim.typed]
         with gui.add_folder("Actions"):
@@ -308,11 +308,11 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
     )
 
 
-def bring(endings: Sequence[str], *, disabled: bool) -> str:
-    """Where a file is brought; the companion sends it and says how far it is."""
+def upload(endings: Sequence[str], *, disabled: bool) -> str:
+    """Where a file is chosen to be uploaded; the page sends it and says how far it is."""
     off = " disabled" if disabled else ""
     return (
-        '<div class="s3-bring"><label>Bring a file<input type="file" aria-label="Bring a file" data-s3-file'
+        '<div class="s3-upload"><label>Bring a file<input type="file" aria-label="Bring a file" data-s3-file'
         f' accept="{",".join(endings)}"{off}>'
         '</label><progress max="1" hidden aria-label="Upload"></progress>'
         '<button type="button" hidden data-s3="give-up">Cancel</button>'

@@ -23,7 +23,7 @@ MOST_ARROWS = 1_200
 ARROW = 0.8
 """Their length, of how far they are apart."""
 FEW = 0.05
-"""Of the mean number of points in a cell: with fewer, they are likelier outliers."""
+"""Share of the mean number of points in a cell: with fewer, they are likelier outliers."""
 MARKS = {"ground": rgb("#c46a1a"), "outliers": rgb(LIGHT.warn), "fixed": rgb(LIGHT.left), "moves": rgb(LIGHT.right)}
 Floats = npt.NDArray[np.float32]
 
@@ -54,7 +54,7 @@ class Drawn:
     names: list[tuple[str, Array]]
     """Words at places: the largest clusters."""
     view: View
-    """Of the whole cloud."""
+    """The view of the whole cloud."""
     cloud: Cloud
     """All of it, before anything was done."""
     tally: Tally | None
@@ -152,7 +152,7 @@ def patch(found: processes.Ground, low: Array, high: Array) -> Array:
 
 @lru_cache(maxsize=16)
 def whole(cloud: Cloud) -> View:
-    """A view of all of a cloud that somebody brought."""
+    """A view of all of a cloud that somebody uploaded."""
     if not len(cloud):
         return View((4.0, -5.0, 4.0), (0.0, 0.0, 0.0), 3.0)
     low, high = clouds.bounds(cloud.points)

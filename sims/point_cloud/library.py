@@ -1,7 +1,7 @@
 """Clouds that aren't built in: those that learners upload, and those in the administrator's folder.
 
 A learner's file has an unguessable name, and is there as long as its session keeps it. An administrator's is known by
-its file's name, and read when somebody asks for it. Both may be read in more than one way: what is guessed of columns
+its file's name, and read when somebody asks for it. Both may be read differently: what is guessed of columns
 and units can be chosen instead.
 """
 
@@ -30,7 +30,7 @@ GUESSED: Chosen = ("", "auto")
 NOTHING = Cloud("", np.empty((0, 3)))
 FIELDS = f"{__name__}:fields"
 KEPT = 4
-"""Clouds of the folder that are kept when nobody looks at them, and ways in which a learner's file was read."""
+"""Clouds of the folder that are kept when nobody looks at them, and readings of a learner's file."""
 AGAIN = 60.0
 """Seconds after which a file is tried again over which the child process failed; one that was refused stays so."""
 LARGEST = 100_000_000
@@ -83,7 +83,7 @@ class Upload:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def reading(self, choice: Chosen) -> _Reading:
-        """The reading in that way, begun if it hasn't been; of those that were chosen, the newest few are kept."""
+        """The reading as chosen, begun if it hasn't been; of those that were chosen, the newest few are kept."""
         with self.lock:
             reading = self.readings.pop(choice, None)
             if reading is None or not reading.holds((0, 0)):
@@ -111,7 +111,7 @@ class Library:
         }
         self._uploads: dict[str, Upload] = {}
         self._readings: dict[tuple[str, Chosen], _Reading] = {}
-        """Of the folder's files, the one that was asked for last at the end."""
+        """Readings of the folder's files; the one that was asked for last is at the end."""
         self._lock = threading.Lock()
 
     def add(self, name: str, data: bytes) -> tuple[str, Mapping[str, Any]]:
@@ -192,4 +192,4 @@ def _asked(name: str, data: bytes | Path, size: int, largest: int, choice: Chose
 
 
 NO_FILES = Library()
-"""Of whom there is no server: its folder is empty."""
+"""The library where there is no server: its folder is empty."""

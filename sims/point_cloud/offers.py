@@ -17,7 +17,7 @@ from sims.point_cloud.solution import CloudSolution
 
 
 class CloudOffers(Offers[CloudParams]):
-    """Of a state and what was last worked out, on a server with those files."""
+    """What a state offers after what was last worked out, on a server with those files."""
 
     def __init__(self, params: CloudParams, solution: CloudSolution | None = None, library: Library = NO_FILES) -> None:
         super().__init__(params)

@@ -22,7 +22,7 @@ LEAST_GROUND = 0.2
 """Share of the points that must be on the ground before clusters are looked for without it."""
 LEAST_CLUSTER = 30
 MOST_STEPS = 40
-"""Of a registration."""
+"""Last step of a registration, at most."""
 LAST = 2
 """Last step of every other process: nothing, found, done."""
 PAIRED = 12_000
@@ -182,18 +182,19 @@ def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: flo
     )
 
 
-def registered(cloud: Cloud, way: Course, number: int) -> Registered:
+def registered(cloud: Cloud, course: Course, number: int) -> Registered:
     """The state at a step; beyond the last one, the last."""
-    number = min(number, len(way.steps) - 1)
-    step = way.steps[number]
+    number = min(number, len(course.steps) - 1)
+    step = course.steps[number]
     paired = np.flatnonzero(step.target >= 0)
     shown = paired[:: max(1, len(paired) // 300)]
-    links = np.stack([se3.apply(step.T_target_source, way.source[shown]), way.target[step.target[shown]]], axis=1)
+    links = np.stack([se3.apply(step.T_target_source, course.source[shown]), course.target[step.target[shown]]], axis=1)
     return Registered(
-        step=number, steps=len(way.steps) - 1, T=step.T_target_source, error=step.error, fitness=step.fitness,
-        rmse=_or_none(step.rmse), pairs=len(paired), converged=way.converged, off=_off(cloud, step.T_target_source),
-        unobservable=way.unobservable, errors=[s.error for s in way.steps], fitnesses=[s.fitness for s in way.steps],
-        rmses=[s.rmse if math.isfinite(s.rmse) else 0.0 for s in way.steps], reach=way.reach, links=links,
+        step=number, steps=len(course.steps) - 1, T=step.T_target_source, error=step.error, fitness=step.fitness,
+        rmse=_or_none(step.rmse), pairs=len(paired), converged=course.converged, off=_off(cloud, step.T_target_source),
+        unobservable=course.unobservable, errors=[s.error for s in course.steps],
+        fitnesses=[s.fitness for s in course.steps],
+        rmses=[s.rmse if math.isfinite(s.rmse) else 0.0 for s in course.steps], reach=course.reach, links=links,
     )  # fmt: skip
 
 

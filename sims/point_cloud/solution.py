@@ -183,11 +183,11 @@ def _outliers(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
 
 
 def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
-    way = _course(p, cloud, thin)
-    if way is None:
+    course = _course(p, cloud, thin)
+    if course is None:
         return _none(p, cloud, thin)
     first, second = (marked(cloud, thin, kind, mark, None) for kind, mark in (("first", "fixed"), ("second", "moves")))
-    found = processes.registered(cloud, way, p.step)
+    found = processes.registered(cloud, course, p.step)
     return Result(first, second, found.T, registration=found)
 
 
@@ -200,8 +200,8 @@ def last_step(p: CloudParams, library: Library) -> int:
     if p.process != "register":
         return processes.LAST
     cloud = source(p, library)
-    way = _course(p, cloud, thinned(cloud, p.voxel_size))
-    return 0 if way is None else len(way.steps) - 1
+    course = _course(p, cloud, thinned(cloud, p.voxel_size))
+    return 0 if course is None else len(course.steps) - 1
 
 
 def _surface(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
@@ -218,7 +218,7 @@ PROCESSES = {
 
 
 def _extent(result: Result) -> tuple[Array, Array]:
-    """Of all points that are shown; where none is left, of nothing at the origin."""
+    """Least and greatest coordinates of all points that are shown; where none is left, the origin twice."""
     ends = [layers.extent(result.base)] if len(result.base.rows) else []
     if len(result.marked.rows) and result.registration is None:
         ends.append(layers.extent(result.marked))

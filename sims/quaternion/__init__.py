@@ -1,4 +1,4 @@
-"""quaternion: a turn about an axis as four numbers, how turns compose, and ways between two orientations.
+"""quaternion: a turn about an axis as four numbers, how turns compose, and paths between two orientations.
 
 An aircraft (nose +X, left wing +Y, top +Z) stands at a start and is turned by an angle about an axis: its target
 is q ⊗ start. Between the two it goes by SLERP, NLERP or Euler angles.

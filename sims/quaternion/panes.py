@@ -20,7 +20,7 @@ from sims.quaternion.params import QuaternionParams
 from sims.quaternion.solution import QuaternionSolution
 
 VIEW = View((3.3, -3.0, 2.0), (0.0, 0.0, 0.1), 1.9)
-"""Of the scene, and of the ball."""
+"""Radii of the scene, and of the ball."""
 WIDTH, HEIGHT = 480, 340
 RADIUS = 66.0
 """Pixels of the unit ball."""
@@ -46,7 +46,7 @@ SCREEN = _screen()
 
 
 def panes(p: QuaternionParams, s: QuaternionSolution) -> list[Pane]:
-    """The ball with q, −q and the way from start to target."""
+    """The ball with q, −q and the path from start to target."""
     picture = BALL.copy()
     picture.curve(places(s.ball_path), "ink", width=3)
     _mark(picture, s.ball_minus_q, -s.n, "−q", hollow=True)

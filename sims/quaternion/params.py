@@ -38,7 +38,7 @@ class QuaternionParams(Params):
     axis: Annotated[Triple, Vector(-LONGEST, LONGEST, step=0.01, title="Axis n", presets=PRESETS)] = (0.0, 0.0, 1.0)
     """Any direction; what you give is put at length one. You can also drag the arrow's tip"""
     angle: Annotated[float, Slider(0, 360, step=1, unit="°", symbol="θ", title="Angle")] = 90
-    """Of the turn about the axis"""
+    """How far the turn about the axis goes"""
     start: Annotated[Quaternion, Vector(-1.0, 1.0, step=0.01, title="Start", hidden=True)] = ONE
     """Orientation before the turn, as a quaternion w, x, y, z of any length but zero"""
     t: Annotated[float, Slider(0, 1, step=0.01, symbol="t", title="Progress")] = 1

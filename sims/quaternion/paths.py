@@ -1,4 +1,4 @@
-"""The ways from one orientation to another: what path the nose takes on the unit sphere, and where it is when."""
+"""Paths from one orientation to another: where the nose goes on the unit sphere, and when it is where."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ DASHES: dict[Name, npt.NDArray[np.intp]] = {"slerp": PIECES, "nlerp": PIECES[EVE
 
 
 @dataclass(frozen=True)
-class Way:
+class NosePath:
     """One interpolation's path on the unit sphere, points (61, 3), and its marks at equal times, (13, 2, 3)."""
 
     path: Array
@@ -42,29 +42,29 @@ class Way:
 
 
 @dataclass(frozen=True)
-class Ways:
+class NosePaths:
     """The one turn that SLERP and NLERP make (unit axis, radians), and the path of each interpolation."""
 
     axis: Array
     angle: float
-    by_name: Mapping[Name, Way]
+    by_name: Mapping[Name, NosePath]
 
 
 @lru_cache(maxsize=64)
-def ways(start: bytes, target: bytes, long_way: bool) -> Ways:
-    """The ways between two unit quaternions, which are given as the bytes of their arrays."""
+def paths(start: bytes, target: bytes, long_way: bool) -> NosePaths:
+    """The paths between two unit quaternions, which are given as the bytes of their arrays."""
     first, last = np.frombuffer(start), np.frombuffer(target)
     R = quaternion.to_matrix(first)
     axis, angle = turn_between(first, last, long_way=long_way)
     arc = orbit(axis, R[:, 0], FINE * angle)
     uneven = orbit(axis, R[:, 0], nlerp_angle(angle, MARKS))
     own = euler_path(R, quaternion.to_matrix(last))
-    by_name: dict[Name, Way] = {
-        "slerp": _way("slerp", arc, arc[::5], OUTWARD),
-        "nlerp": _way("nlerp", arc, uneven, INWARD),
-        "euler": _way("euler", own, own[::5], OUTWARD),
+    by_name: dict[Name, NosePath] = {
+        "slerp": _path("slerp", arc, arc[::5], OUTWARD),
+        "nlerp": _path("nlerp", arc, uneven, INWARD),
+        "euler": _path("euler", own, own[::5], OUTWARD),
     }
-    return Ways(axis, float(angle), by_name)
+    return NosePaths(axis, float(angle), by_name)
 
 
 def euler_path(first: Array, last: Array) -> Array:
@@ -77,14 +77,14 @@ def euler_path(first: Array, last: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def ball_path(start: bytes, target: bytes, long_way: bool, euler: bool) -> Array:
-    """The way from start to target in the stereographic ball, (31, 3); SLERP and NLERP take the same one."""
+    """The path from start to target in the stereographic ball, (31, 3); SLERP and NLERP take the same one."""
     first, last = np.frombuffer(start), np.frombuffer(target)
     if euler:
         return to_ball(euler_interpolation(first, last, COARSE))[0]
-    whole = ways(start, target, long_way)
+    whole = paths(start, target, long_way)
     return to_ball(turned_by(first, whole.axis, COARSE * whole.angle))[0]
 
 
-def _way(name: Name, path: Array, places: Array, radii: Array) -> Way:
+def _path(name: Name, path: Array, places: Array, radii: Array) -> NosePath:
     marks = places[:, None] * radii
-    return Way(path, marks, np.concatenate([path[DASHES[name]], marks]))
+    return NosePath(path, marks, np.concatenate([path[DASHES[name]], marks]))

@@ -10,7 +10,7 @@ import trimesh
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
 from sims.quaternion.params import TIP, QuaternionParams
-from sims.quaternion.paths import Name, Way
+from sims.quaternion.paths import Name, NosePath
 from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
@@ -126,7 +126,7 @@ class Path:
         self.thin = stage.lines(f"{path}/ghost", "ghost", width=1.5)
         self.label = stage.label(f"{path}/label", NAMES[name])
 
-    def draw(self, way: Way, chosen: Name) -> None:
+    def draw(self, way: NosePath, chosen: Name) -> None:
         """Where SLERP's and NLERP's arc is drawn for one of them, only the other's marks are added."""
         line, other = (self.thick, self.thin) if chosen == self.name else (self.thin, self.thick)
         line.pieces(way.marks if {self.name, chosen} == {"slerp", "nlerp"} else way.drawn)

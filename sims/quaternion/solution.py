@@ -14,7 +14,7 @@ from geometry.euler import matrix_to_euler
 from geometry.interpolation import euler_interpolation, nlerp, nlerp_angle, slerp
 from geometry.rotations import unit
 from sims.quaternion.params import ONE, TIP, QuaternionParams, Triple
-from sims.quaternion.paths import Name, Way, ball_path, ways
+from sims.quaternion.paths import Name, NosePath, ball_path, paths
 
 IDENTITY = np.array(ONE)
 APART = 0.15
@@ -57,10 +57,10 @@ class QuaternionSolution:
     n: Array
     """The axis at length one."""
     length: float
-    """Of the axis as given."""
+    """Length of the axis as given."""
     start: Array
     way_axis: Array
-    """Of the one turn from start to target that SLERP and NLERP make, unit."""
+    """Axis of the one turn from start to target that SLERP and NLERP make, unit."""
     way_angle: float
     """Its angle in degrees."""
     lead: float
@@ -71,10 +71,10 @@ class QuaternionSolution:
     ball_now: Array | None
     """The object's quaternion at t there."""
     ball_start: Array | None
-    """The start there, and the target as the way comes to it; only for a start that is turned."""
+    """The start there, and the target as the path comes to it; only for a start that is turned."""
     ball_target: Array | None
     ball_path: Array
-    """Its way from start to target there, (n, 3)."""
+    """Its path from start to target there, (n, 3)."""
     axis_frame: Array
     """Orientation of the angle's arc: z along the axis, x where the arc starts."""
     tip: Array
@@ -84,7 +84,7 @@ class QuaternionSolution:
     at_start: bool
     """The object is drawn where the start is."""
     at_target: bool
-    ways: Mapping[Name, Way]
+    ways: Mapping[Name, NosePath]
 
 
 def solve(p: QuaternionParams) -> QuaternionSolution:
@@ -97,7 +97,7 @@ def solve(p: QuaternionParams) -> QuaternionSolution:
     now = _between(p, start, total)
     n = unit(p.axis)
     ends = start.tobytes(), total.tobytes()
-    way = ways(*ends, p.long_way)
+    way = paths(*ends, p.long_way)
     path = ball_path(*ends, p.long_way, p.interpolation == "euler")
     turned = not _same(start, IDENTITY)
     steps = hamilton.sandwich(q, p.point)

@@ -74,7 +74,7 @@ def _measured(picture: Picture, measured: Pixel, side: Side) -> None:
 
 
 def _reprojected(picture: Picture, name: Method, at: Pixel, *, chosen: bool) -> None:
-    """Where the point of a method is seen; if it isn't the result, only while it is lit."""
+    """Where the point of a method is seen; if it isn't the result, only while it is highlighted."""
     words = f"The {NAMES[name]} point, seen from here"
     if picture.shows(at):
         picture.point(name, at, words, quiet=not chosen)

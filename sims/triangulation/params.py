@@ -23,7 +23,7 @@ class TriangulationParams(Params):
     baseline: Annotated[float, Slider(0.05, 2, step=0.01, unit="m", symbol="b", title="Baseline")] = 0.6
     """Distance between the cameras"""
     focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
-    """Of both cameras"""
+    """The same for both cameras"""
     left_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v")] = (410.0, 210.0)
     """Where the point is in the left picture, before noise"""
     right_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v")] = (320.0, 210.0)

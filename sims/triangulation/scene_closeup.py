@@ -14,7 +14,7 @@ from sims.triangulation.scene_shapes import Shape
 from sims.triangulation.solution import METHODS, TriangulationSolution
 
 RADIUS, HEIGHT = 0.19, 0.36
-"""Of the glass, and how far above the point it hangs, as parts of the point's depth."""
+"""Radius of the glass, and how far above the point it hangs, as parts of the point's depth."""
 MAGNIFICATIONS = tuple(10.0**power * k for power in range(7) for k in (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
 LEAST = 1.5
 """Magnification below which it shows nothing more than the scene does."""

@@ -13,7 +13,7 @@ from sims.triangulation.solution import METHODS
 
 
 def _shape(name: Method) -> trimesh.Trimesh:
-    """Of radius about one."""
+    """Bodies of radius about one."""
     body: trimesh.Trimesh
     if name == "dlt":
         body = trimesh.creation.box((1.6, 1.6, 1.6))

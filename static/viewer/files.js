@@ -22,7 +22,7 @@ export class Files {
 
   // viser makes the bar and the words anew with its panel.
   show() {
-    const bar = document.querySelector(".s3-bring progress");
+    const bar = document.querySelector(".s3-upload progress");
     const words = document.querySelector("[data-s3-file-status]");
     if (!bar || (!this.said && bar.hidden)) return;
     bar.hidden = bar.nextElementSibling.hidden = this.share === null;
@@ -36,7 +36,7 @@ export class Files {
     this.share = share;
     this.show();
     // A file can be dropped anywhere, also while the controls of files are folded away.
-    if (!document.querySelector(".s3-bring")?.checkVisibility()) this.words.notify(words);
+    if (!document.querySelector(".s3-upload")?.checkVisibility()) this.words.notify(words);
   }
 
   giveUp() {

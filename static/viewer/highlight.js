@@ -40,8 +40,8 @@ export class Highlight {
 
   show() {
     const all = [this.mine, this.theirs].filter(Boolean).map(linked).join();
-    for (const node of document.querySelectorAll(".s3-lit")) if (!all || !node.matches(all)) node.classList.remove("s3-lit");
-    if (all) for (const node of document.querySelectorAll(all)) node.classList.add("s3-lit");
+    for (const node of document.querySelectorAll(".s3-highlighted")) if (!all || !node.matches(all)) node.classList.remove("s3-highlighted");
+    if (all) for (const node of document.querySelectorAll(all)) node.classList.add("s3-highlighted");
   }
 
   select(name) {

@@ -50,9 +50,7 @@ FORMULAS = """() => [...document.querySelectorAll(".s3-readouts math")].map(form
     formula.textContent.split("=")[0], ...[...formula.querySelectorAll("mn")].map(n => n.textContent)])"""
 
 
-LIT = (
-    """() => [...document.querySelectorAll(".s3-lit")].map((node) => [node.tagName.toLowerCase(), node.dataset.link])"""
-)
+LIT = """() => [...document.querySelectorAll(".s3-highlighted")].map((node) => [node.tagName.toLowerCase(), node.dataset.link])"""
 
 
 class Witness:

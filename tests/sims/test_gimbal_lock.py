@@ -74,7 +74,7 @@ def drawn_axis(rig: Rig, ring: str) -> Array:
 
 
 def middle_and_normal(points: Array) -> tuple[Array, Array]:
-    """Of points on a ring: their middle, and the direction across its plane (up to its sign)."""
+    """The middle of points on a ring, and the direction across its plane (up to its sign)."""
     middle = points.mean(axis=0)
     return middle, np.linalg.svd(points - middle)[2][2]
 

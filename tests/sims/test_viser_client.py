@@ -53,7 +53,7 @@ NAMES = sorted(
     {*re.findall(r"mantine-([A-Z]\w+)-\w+", DOM + STYLES), *re.findall(r"tabler-icon-([\w-]+)", DOM)}
     | {*re.findall(r"data-dock-\w+", DOM + STYLES), *re.findall(r"^    (\w+): [`\w]", DOM, re.MULTILINE)}
 )
-"""Of the client's components, icons and regions, and of what it reads from the address."""
+"""Names of the client's components, icons and regions, and of what it reads from the address."""
 
 
 @pytest.mark.parametrize("words", ["vec4(0.0, 0.0, 0.0, a)", "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)"])

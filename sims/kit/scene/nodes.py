@@ -16,7 +16,7 @@ from sims.kit.types import Segment, Vector
 from sims.kit.viser_internals import send_pose, set_pose, set_property, set_visible
 
 HEAD_RADIUS, HEAD_LENGTH = 2.6, 7.0
-"""Of an arrow, in radii of its shaft."""
+"""Size of an arrow's head, in radii of its shaft."""
 
 
 class Node:

@@ -119,7 +119,7 @@ def _with_unnamed(table: Table, roles: list[str]) -> list[str]:
 
 
 def _by_values(table: Table) -> list[str]:
-    """Of columns without names: x, y and z come first, but for row numbers; then what their values look like."""
+    """Roles of columns without names: x, y and z come first, but for row numbers; then what their values look like."""
     values = [_some(v) for v in table.values]
     numbers = [k for k, v in enumerate(values) if v is not None]
     # six are likelier coordinates and colours, or normals, of which x is evenly spaced

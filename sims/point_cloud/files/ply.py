@@ -161,7 +161,7 @@ def _table(data: bytes, start: int, element: _Element, order: str) -> tuple[dict
 
 
 def _lengths(data: bytes, start: int, element: _Element, order: str) -> list[int]:
-    """Of the lists of the first of an element."""
+    """Lengths of the lists of the first of an element."""
     lengths = list[int]()
     for one in element.properties:
         if one.length:

@@ -18,7 +18,7 @@ LABELS = {"metres": "metres", "millimetres": "millimetres", "feet": "feet", "us-
 NO_PLACE_IN_METRES = 5e7
 """Farther from the origin no map projection's coordinates in metres or feet are: they are millimetres."""
 _EQUATOR, _SQUARED_ECCENTRICITY = 6_378_137.0, 0.006_694_38
-"""Of the ellipsoid WGS 84, in metres."""
+"""Equatorial radius in metres, and eccentricity squared, of the ellipsoid WGS 84."""
 _WORDS = (
     ("us-feet", r"us[ _-]*survey[ _-]*f|us[ _]?ft|ft[ _]?us|foot[ _]us|us[ _]f(oo|ee)t"),
     ("feet", r"\bf(oo|ee)t\b|\bft\b"),
