@@ -117,7 +117,7 @@ class Server:
             stderr=subprocess.STDOUT,
         )
         try:
-            wait_for(self._answers, "the server to answer /healthz")
+            wait_for(self._answers, "the server to answer /healthz", 3 * PATIENCE)
         except BaseException:
             self.kill()
             raise AssertionError(f"the server didn't start:\n{self.log()}") from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fastapi import APIRouter, HTTPException, Request
@@ -122,21 +122,23 @@ async def watched(request: Request, given: Given, slug: str, room: str) -> Respo
 
 @page("/viser/{fingerprint}/{name}")
 async def client(request: Request, fingerprint: str, name: str) -> Response:
-    if fingerprint != viser_client.fingerprint() or name not in viser_client.files():
-        raise HTTPException(404, "There is no such file.")
-    kind = "text/css" if name.endswith(".css") else "text/javascript"
-    plain, zipped = rendering.client_file(name)
-    if "gzip" not in request.headers.get("accept-encoding", ""):
-        return Response(plain, media_type=kind, headers={**FOR_EVER, "vary": "accept-encoding"})
-    headers = {**FOR_EVER, "vary": "accept-encoding", "content-encoding": "gzip"}
-    return Response(zipped, media_type=kind, headers=headers)
+    return _file(request, viser_client.files(), name, known=fingerprint == viser_client.fingerprint())
 
 
 @page("/viewer/{fingerprint}/{name}")
 async def script(request: Request, fingerprint: str, name: str) -> Response:
-    if fingerprint != rendering.modules_fingerprint() or name not in rendering.modules():
+    return _file(request, rendering.modules(), name, known=fingerprint == rendering.modules_fingerprint())
+
+
+def _file(request: Request, files: Mapping[str, bytes], name: str, *, known: bool) -> Response:
+    """A file that never changes under its address."""
+    if not known or name not in files:
         raise HTTPException(404, "There is no such file.")
-    return Response(rendering.modules()[name], media_type="text/javascript", headers=FOR_EVER)
+    data, headers = files[name], {**FOR_EVER, "vary": "accept-encoding"}
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        data, headers["content-encoding"] = rendering.compressed(data), "gzip"
+    kind = "text/css" if name.endswith(".css") else "text/javascript"
+    return Response(data, media_type=kind, headers=headers)
 
 
 # Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.

@@ -96,10 +96,9 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: st
 
 
 @functools.cache
-def client_file(name: str) -> tuple[bytes, bytes]:
-    """A file of viser's client, plain and compressed. Raises KeyError."""
-    plain = viser_client.files()[name]
-    return plain, gzip.compress(plain, 9)
+def compressed(data: bytes) -> bytes:
+    """A file that never changes, compressed once."""
+    return gzip.compress(data, 9)
 
 
 def sim_or_404(slug: str) -> AnySim:
