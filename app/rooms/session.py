@@ -10,6 +10,7 @@ import asyncio
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from inspect import isgeneratorfunction
 from typing import Any
 
 from pydantic import ValidationError
@@ -112,7 +113,7 @@ class Session:
     ) -> None:
         if (held := known.get(name)) is None:
             raise Unknown(kind, name, known)
-        self._find(lambda: held(self.params, place, *self.given), self.change)
+        self._find(lambda: held(self.params, place, *self.given), self.change, place=True)
 
     def select(self, name: str) -> None:
         """Select what is linked under a name; nothing happens where that can't be selected."""
@@ -130,7 +131,10 @@ class Session:
         action = next((a for a in self.sim.actions if a.name == name), None)
         if action is None:
             raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
-        self._find(lambda: action.run(self.params, *self.given), self._take)
+        if isgeneratorfunction(action.run):  # a motion, whose steps are found as it goes
+            self.motion.begin(action.run(self.params, *self.given))
+        else:
+            self._find(lambda: action.run(self.params, *self.given), self._take, place=False)
 
     def _take(self, result: Mapping[str, Any] | Iterator[Step]) -> None:
         """Take what an action leads to."""
@@ -139,9 +143,9 @@ class Session:
         else:
             self.motion.begin(result)
 
-    def _find(self, find: Callable[[], Any], take: Callable[[Any], None]) -> None:
+    def _find(self, find: Callable[[], Any], take: Callable[[Any], None], *, place: bool) -> None:
         if self.sim.heavy:
-            self._looking_up.ask(find, take)
+            self._looking_up.ask(find, take, place=place)
         else:
             take(find())
 

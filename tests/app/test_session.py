@@ -839,6 +839,32 @@ def test_what_a_handle_of_a_heavy_sim_means_is_found_beside_the_loop() -> None:
     run(test)
 
 
+def test_every_press_of_a_heavy_sims_button_counts() -> None:
+    async def test() -> None:
+        room = Room(heavy=True)
+        await room.drawn()
+        more = Action("more", "More", "", lambda p: {"size": p.size + 1.0})
+        room.session.sim = dataclasses.replace(room.session.sim, actions=(*room.session.sim.actions, more))
+        for _ in range(3):
+            room.session.act("more")
+        await room.drawn()
+        assert room.session.params == ToyParams(size=4)
+
+    run(test)
+
+
+def test_a_motion_of_a_heavy_sim_begins_at_once_and_a_touch_ends_it() -> None:
+    async def test() -> None:
+        room = Room(0.1, heavy=True)
+        room.session.act("grow")  # while the first state is worked out
+        assert room.session.motion.task is not None
+        room.session.change({"size": 7})
+        await room.moved()
+        assert room.session.params == ToyParams(size=7)
+
+    run(test)
+
+
 def test_of_a_flood_of_places_only_the_last_is_looked_for() -> None:
     async def test() -> None:
         room = Room(heavy=True)
