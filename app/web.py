@@ -14,7 +14,7 @@ from starlette.routing import Route, WebSocketRoute
 
 from app.proxies import Forwarded, Prefix
 from app.rooms.registry import Sessions
-from app.routes import api, files, links, pages, rendering, sockets
+from app.routes import api, files, links, pages, rendering, sockets, text
 from app.routes.answers import Answers, Busy, Gone
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
@@ -25,7 +25,7 @@ from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, api.router, sockets.router, files.router)
+ROUTERS = (pages.router, text.router, api.router, sockets.router, files.router)
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:

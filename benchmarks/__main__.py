@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks import cloud, clouds, opening
+from benchmarks import cloud, clouds, felt, opening
 from benchmarks.process import CORES, resident
 from benchmarks.servers import Plain, Sim3
 from geometry.clouds import voxels
@@ -28,19 +28,23 @@ FORGOTTEN_AFTER = 62.0
 """Seconds after which the server forgets a session that nobody looks at."""
 CLOUD = "room"
 """The dataset whose voxel slider is dragged."""
+PARTS = "learners", "beside", "sessions", "opening", "felt", "clouds"
 Rows = list[dict[str, Any]]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer learners and seconds, less certain numbers")
-    parser.add_argument("--only", choices=("learners", "beside", "sessions", "opening", "clouds"), help="one part")
+    parser.add_argument(
+        "--only", choices=("learners", "beside", "sessions", "opening", "felt", "clouds"), help="one part"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers there too")
     args = parser.parse_args()
     if len(CORES) < 2:
         raise SystemExit("The benchmark needs Linux and two cores: one for the server, one for the load.")
     parts = {
-        "learners": learners, "beside": beside, "sessions": sessions, "opening": openings, "clouds": clouds.measure,
+        "learners": learners, "beside": beside, "sessions": sessions, "opening": openings, "felt": felt_speed,
+        "clouds": clouds.measure,
     }  # fmt: skip
     print(f"{len(CORES)} cores, load average {os.getloadavg()[0]:.1f} before the start")
     results = {name: part(args.quick) for name, part in parts.items() if args.only in (None, name)}
@@ -168,6 +172,17 @@ def openings(quick: bool) -> Rows:
         still = f"{statistics.median(times['still']):.2f}" if "still" in times else ""
         live = f"{statistics.median(times['live']):.2f}"
         table.add([way, still, live, " ".join(f"{seconds:.2f}" for seconds in times["live"])])
+    return rows
+
+
+def felt_speed(quick: bool) -> Rows:
+    """From a hand to the numbers and the frame."""
+    print("\nFrom an input in headless Chromium, software rendering, to what is seen; milliseconds, medians")
+    table = Table("sim, way        |   numbers|     frame|main thread|  layouts")
+    rows: Rows = []
+    for way, took in felt.measure(3 if quick else 12).items():
+        rows.append({"way": way, **took})
+        table.add([way, *(f"{took[name]:.0f}" for name in ("numbers", "frame", "main")), f"{took['layouts']:.1f}"])
     return rows
 
 

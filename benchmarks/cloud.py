@@ -20,7 +20,6 @@ SLUG = "point-cloud"
 SCANS = {"dataset": "two-scans", "process": "register", "step": 40}
 REACH, STEP = 0.3, 0.001
 """Metres within which pairs are looked for; each time another, so that no result is known already."""
-SLIDER = "Voxel size"
 POINTS = "/cloud/points"
 
 
@@ -37,7 +36,6 @@ class Cloud:
         self._channel: ClientConnection
         self._viser: ClientConnection
         self._count = 0
-        self._slider = ""
         self._drawn: asyncio.Queue[tuple[int, float]] = asyncio.Queue()
         """Numbers of points that came, and when."""
         self.took: list[float] = []
@@ -90,8 +88,7 @@ class Cloud:
             for place, size in enumerate(counts):
                 await asyncio.sleep(begin + place / rate - loop.time())
                 sent.append(perf_counter())
-                update = {"type": "GuiUpdateMessage", "uuid": self._slider, "updates": {"value": size}}
-                await self._viser.send(encode_message(update))
+                await self._channel.send(json.dumps({"type": "slide", "name": "voxel_size", "value": size}))
 
         sending = asyncio.create_task(send())
         while len(ages) < len(counts):
@@ -112,9 +109,7 @@ class Cloud:
                     self._see(message, now)
 
     def _see(self, message: Message, now: float) -> None:
-        if message["type"] == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
-            self._slider = message["uuid"]
-        elif message.get("name") == POINTS and "points" in message.get("updates", ()):
+        if message.get("name") == POINTS and "points" in message.get("updates", ()):
             self._drawn.put_nowait((len(message["updates"]["points"]) // 3, now))
 
     async def _listen(self) -> None:

@@ -23,7 +23,7 @@ TURNED = "/turn1"
 """The node whose orientation is the slider's angle about z, in both ways of writing the sim."""
 FIRST = -179
 """Slider values are whole degrees from here on up to 180: no two alike, for 17 seconds at 20 a second."""
-HELLO = {"type": "hello", "dark": False, "reduced": False, "width": 1280, "controls": True, "query": ""}
+HELLO = {"type": "hello", "dark": False, "reduced": False, "query": ""}
 
 
 class Learner:
@@ -34,6 +34,8 @@ class Learner:
         self._url = f"ws://{host}{path}"
         self._stack = AsyncExitStack()
         self._viser: ClientConnection
+        self._channel: ClientConnection | None = None
+        """What the slider moves on; a page of plain viser has none."""
         self._tasks: list[asyncio.Task[None]] = []
         self._slider = ""
         self._opened = asyncio.Event()
@@ -55,7 +57,8 @@ class Learner:
         options: dict[str, Any] = {"compression": None, "max_size": None, "ping_interval": None}
         if "/s/" in self._url:
             channel = connect(f"{self._url}channel?viewer={viewer}", **options)
-            await self._listen(await self._stack.enter_async_context(channel))
+            self._channel = await self._stack.enter_async_context(channel)
+            await self._listen(self._channel)
         viser_socket = connect(f"{self._url}?viewer={viewer}", subprotocols=[PROTOCOL], **options)
         self._viser = await self._stack.enter_async_context(viser_socket)
         await self._viser.send(encode_message(self._camera))
@@ -89,7 +92,7 @@ class Learner:
 
     def _see(self, value: int, now: float) -> None:
         self.shown = value
-        if self._slider:
+        if self._slider or self._channel:
             self._opened.set()
         index = self._index.get(value)
         if index is None:
@@ -111,8 +114,11 @@ class Learner:
             await asyncio.sleep(due - loop.time())
             self.late.append(loop.time() - due)
             self.sent.append(perf_counter())
-            update = {"type": "GuiUpdateMessage", "uuid": self._slider, "updates": {"value": value}}
-            await self._viser.send(encode_message(update))
+            if self._channel is not None:
+                await self._channel.send(json.dumps({"type": "slide", "name": "yaw", "value": value}))
+            else:
+                update = {"type": "GuiUpdateMessage", "uuid": self._slider, "updates": {"value": value}}
+                await self._viser.send(encode_message(update))
 
     @property
     def arrived(self) -> bool:

@@ -11,13 +11,15 @@ visibility that it had.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
 import zstandard
+
+from sims.kit.viewer import VERSION
 
 Array = npt.NDArray[np.float64]
 Message = dict[str, Any]
@@ -119,49 +121,18 @@ class SceneNode:
         return flat.reshape(-1, *shape) if shape else flat
 
 
-@dataclass
-class GuiElement:
-    """A control, folder, or piece of HTML in the panel."""
-
-    uuid: str
-    kind: str
-    container: str
-    value: Any
-    props: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def label(self) -> str:
-        return str(self.props.get("label") or "")
-
-    @property
-    def bounds(self) -> tuple[Any, Any]:
-        """Least and greatest value."""
-        return self.props.get("min"), self.props.get("max")
-
-    @property
-    def content(self) -> str:
-        """HTML of an HTML element."""
-        return str(self.props.get("content", ""))
-
-    @property
-    def order(self) -> float:
-        return float(self.props.get("order", 0.0))
-
-
 class SceneModel:
-    """The scene and panel of one browser, from the frames that it received."""
+    """The scene of one browser, from the frames that it received."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
         """Forget everything, as the client does when it connects anew."""
-        self.gui: dict[str, GuiElement] = {}
-        self.panels: dict[str, dict[str, Any]] = {}
         self.latest: dict[str, Message] = {}
-        """The last message of each type that is neither a node nor a control."""
+        """The last message of each type that isn't about a node."""
         self.strays: list[str] = []
-        """Updates of nodes and controls that don't exist; the client drops most of them silently."""
+        """Updates of nodes that don't exist; the client drops most of them silently."""
         self.frames = self.messages = self.bytes = 0
         self._variants: dict[str, dict[str, SceneNode]] = {}
 
@@ -182,8 +153,6 @@ class SceneModel:
             _HANDLERS[kind](self, message)
         elif "props" in message and "name" in message:
             self._create(message)
-        elif "props" in message and "uuid" in message:
-            self._create_gui(message)
         else:
             self.latest[kind] = message
 
@@ -239,52 +208,16 @@ class SceneModel:
         """Names of the nodes that answer to a drag."""
         return sorted(name for name in self._variants if self.node(name).drags)
 
-    # ---- the panel
-
-    def control(self, label: str) -> GuiElement:
-        """The element with a label; one whose label begins with it when none is called exactly so."""
-        exact = [e for e in self.gui.values() if e.label == label]
-        found = exact or [e for e in self.gui.values() if e.label.startswith(label)]
-        if len(found) != 1:
-            known = ", ".join(repr(e.label) for e in self.gui.values() if e.label)
-            raise KeyError(f"{len(found)} elements are called {label!r}; there are {known}")
-        return found[0]
-
-    def html(self, marker: str = "") -> str:
-        """Content of the HTML elements (panes, toolbar, read-outs) that hold `marker`, in panel order."""
-        pieces = [e.content for e in self.ordered() if e.kind == "GuiHtmlMessage"]
-        return "\n".join(piece for piece in pieces if marker in piece)
-
-    def ordered(self) -> list[GuiElement]:
-        """All elements in the order in which the panel shows them."""
-        containers = [c for panel in self.panels.values() for c in panel.get("_tab_container_ids", ())]
-        return [e for container in [*containers, "root"] for e in self._inside(container)]
-
-    def path(self, element: GuiElement) -> tuple[str, ...]:
-        """Labels of the folders and tabs round an element, outermost first."""
-        if (parent := self.gui.get(element.container)) is not None:
-            return (*self.path(parent), parent.label)
-        for panel in self.panels.values():
-            if element.container in (ids := list(panel.get("_tab_container_ids", ()))):
-                return (str(panel["_tab_labels"][ids.index(element.container)]),)
-        return ()
-
-    def _inside(self, container: str) -> Iterator[GuiElement]:
-        held = [e for e in self.gui.values() if e.container == container]
-        for element in sorted(held, key=lambda e: e.order):
-            yield element
-            yield from self._inside(element.uuid)
-
     # ---- comparing
 
     def snapshot(self) -> dict[str, Any]:
         """Everything that is seen, without what differs between connections (owners, ids, order numbers)."""
-        scene = {f"scene {name}": self._seen(name) for name in self.names if self.visible(name)}
-        panel = {
-            f"gui {k:02} {' / '.join((*self.path(e), e.label or e.kind))}": _seen_element(e)
-            for k, e in enumerate(self.ordered())
-        }
-        return {**scene, **panel}
+        return {f"scene {name}": self._seen(name) for name in self.names if self.visible(name) and name != VERSION}
+
+    @property
+    def version(self) -> int:
+        """Which version of the state is drawn; -1 before any."""
+        return round(self.node(VERSION).position[0]) if VERSION in self else -1
 
     def _seen(self, name: str) -> dict[str, Any]:
         node = self.node(name)
@@ -342,39 +275,6 @@ class SceneModel:
             if not self._variants[other]:
                 del self._variants[other]
 
-    def _create_gui(self, message: Message) -> None:
-        self.gui[message["uuid"]] = GuiElement(
-            message["uuid"],
-            message["type"],
-            message.get("container_uuid", "root"),
-            message.get("value"),
-            dict(message["props"]),
-        )
-
-    def _update_gui(self, message: Message) -> None:
-        updates = message["updates"]
-        if message["uuid"] in self.panels:
-            self.panels[message["uuid"]].update(updates)
-        elif (element := self.gui.get(message["uuid"])) is None:
-            self.strays.append(f"GuiUpdateMessage of {', '.join(updates)}")
-        else:
-            element.value = updates.get("value", element.value)
-            known = {k: v for k, v in updates.items() if k in element.props}
-            element.props.update(known)
-            unknown = updates.keys() - known.keys() - {"value"}
-            self.strays += [f"property {k} of {element.label}" for k in sorted(unknown)]
-
-    def _remove_gui(self, message: Message) -> None:
-        for inner in [e.uuid for e in self._inside(message["uuid"])]:
-            self.gui.pop(inner, None)
-        self.gui.pop(message["uuid"], None)
-
-    def _add_panel(self, message: Message) -> None:
-        self.panels[message["uuid"]] = dict(message["props"])
-
-    def _remove_panel(self, message: Message) -> None:
-        self.panels.pop(message["uuid"], None)
-
 
 _HANDLERS = {
     "SetOrientationMessage": SceneModel._orient,
@@ -384,21 +284,11 @@ _HANDLERS = {
     "SetSceneNodeDragBindingsMessage": SceneModel._bind_drag,
     "SetSceneNodeClickBindingsMessage": SceneModel._bind_click,
     "RemoveSceneNodeMessage": SceneModel._remove,
-    "GuiUpdateMessage": SceneModel._update_gui,
-    "GuiRemoveMessage": SceneModel._remove_gui,
-    "GuiPanelMessage": SceneModel._add_panel,
-    "GuiPanelRemoveMessage": SceneModel._remove_panel,
 }
 
 
 def _bindings(message: Message) -> tuple[tuple[str, str | None], ...]:
     return tuple((b["button"], b["modifier"]) for b in message["bindings"])
-
-
-def _seen_element(element: GuiElement) -> dict[str, Any]:
-    # How many decimals a box of numbers shows depends on the value at which its page was opened.
-    props = {k: v for k, v in element.props.items() if k not in ("order", "precision")}
-    return {"kind": element.kind, "value": element.value, "props": props}
 
 
 def _lineage(name: str) -> Iterator[str]:

@@ -35,12 +35,15 @@ import viser
 
 from app.rooms.registry import Sessions
 from app.sockets.commands import Commands
-from app.sockets.viser_messages import GuiUpdateMessage, decoder
+from app.sockets.viser_messages import decoder
+from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
 from sims.kit.sim import Sim
-from sims.kit.viewer import Look, Viewer
+from sims.kit.spelling import spell
+from sims.kit.viewer import Viewer
 from sims.kit.viser_internals import ViserHost, Wire
-from tests.frames import GuiElement, SceneModel, encode_message
+from tests.column import ColumnModel
+from tests.frames import SceneModel, encode_message
 
 ROOT = Path(__file__).resolve().parent.parent
 PATIENCE = 20.0
@@ -203,10 +206,13 @@ def shared_host() -> Host:
 
 
 class Browser:
-    """A simulated browser on a session: viser's client without pictures."""
+    """A simulated browser on a session: viser's client without pictures, and the column beside it."""
 
-    def __init__(self, host: Host, session: Any, look: Look) -> None:
+    def __init__(self, host: Host, session: Any, *, dark: bool = False, watching: bool = False) -> None:
         self.model = SceneModel()
+        self.column = ColumnModel()
+        self.told: list[dict[str, Any]] = []
+        """Messages on the channel."""
         self.sent = 0
         self._host = host
         self._session = session
@@ -223,14 +229,19 @@ class Browser:
         self.send(camera_message())
         assert arrived.wait(PATIENCE), "viser didn't take the connection"
         self.client = clients[0]
-        self.viewer = host.call(lambda: self._show(look))
+        self._commands = Commands(session, self._hear)
+        self.viewer = host.call(lambda: self._show(dark, watching))
 
-    def _show(self, look: Look) -> Viewer:
+    def _show(self, dark: bool, watching: bool) -> Viewer:
         session = self._session
-        commands = Commands(session, session.telling.tell)
-        viewer = Viewer(session.sim, self.client, commands, look, session.params, session.given)
+        viewer = Viewer(session.sim, self.client, self._commands, dark=dark, watching=watching)
         session.join(viewer)
+        session.listen(self._hear)
         return viewer
+
+    def _hear(self, message: dict[str, Any]) -> None:
+        self.told.append(message)
+        self.column.take(message)
 
     async def _receive(self, frame: bytes) -> None:
         self.model.feed(frame)
@@ -241,13 +252,7 @@ class Browser:
         checked = decoder.decode(data)
         self.sent += 1
 
-        def hand_on() -> None:
-            if isinstance(checked, GuiUpdateMessage):
-                assert self.viewer.input(checked.uuid, checked.updates.value)
-            else:
-                self.wire.feed(data, checked.value_of)
-
-        self._host.call(hand_on)
+        self._host.call(lambda: self.wire.feed(data, checked.value_of))
 
     def settle(self) -> None:
         """Wait until everything that viser has to send has arrived."""
@@ -257,22 +262,27 @@ class Browser:
         latest = self.model.latest
         wait_for(lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send")
 
-    def control(self, field: str) -> GuiElement:
-        """The control of a parameter, or one by its label."""
-        params = self._session.params
-        return self.model.control(params.label(field) if field in type(params).model_fields else field)
-
-    def move(self, field: str, value: Any) -> None:
-        """Set a control of the panel, as a hand on it would: it shows the value at once, then tells viser."""
-        control = self.control(field)
-        control.value = value
-        self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": value}})
+    def move(self, name: str, value: Any) -> None:
+        """Set an input by its name: a slider is moved, into anything else is typed, or chosen."""
+        kind = self._session.params.kinds.get(name.partition(".")[0])
+        if isinstance(kind, Slider | Numbers):
+            self._host.call(lambda: self._commands.slide(name, value))
+            return
+        text = "" if value is None else spell(tuple(value) if isinstance(value, list) else value)
+        self._host.call(lambda: self._commands.enter(name, text))
 
     def press(self, action: str) -> None:
-        """Press a button, by its action's name or its label."""
-        label = next((a.label for a in self._session.sim.actions if a.name == action), action)
-        control = self.model.control(label)
-        self.send({"type": "GuiUpdateMessage", "uuid": control.uuid, "updates": {"value": True}})
+        """Press a button, by its action's name."""
+        self._host.call(lambda: self._commands.act(action))
+
+    @property
+    def refused(self) -> list[str]:
+        """What the page was told to be wrong."""
+        return [message["message"] for message in self.told if message["type"] == "error"]
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything that is seen."""
+        return {**self.model.snapshot(), **self.column.snapshot()}
 
     def drag(self, name: str, *places: tuple[float, float, float], modifier: str | None = None) -> None:
         """Take a node at its middle, lead it through places in the world, and let go."""
@@ -312,7 +322,7 @@ class Browser:
 
     def leave(self) -> None:
         """Close the page."""
-        self._host.call(lambda: self._session.leave(viewer=self.viewer))
+        self._host.call(lambda: self._session.leave(viewer=self.viewer, listener=self._hear))
         self._host.call(self.wire.hang_up)
         self._serving.result(PATIENCE)
 
@@ -320,7 +330,7 @@ class Browser:
 class Rig:
     """A session of a sim with one browser on it (and more, with `join`)."""
 
-    def __init__(self, sim: Sim[Any, Any], params: Params | None = None, look: Look | None = None) -> None:
+    def __init__(self, sim: Sim[Any, Any], params: Params | None = None, **page: bool) -> None:
         self.host = shared_host()
         self._log = _Recorder()
         logging.getLogger("sim3").addHandler(self._log)
@@ -328,16 +338,21 @@ class Rig:
         start = sim.params() if params is None else params
         self.session = self.host.call(lambda: self._sessions.open(sim, "room", start))
         self.browsers: list[Browser] = []
-        self.browser = self.join(look)
+        self.browser = self.join(**page)
 
     @property
     def model(self) -> SceneModel:
         """What the first browser shows."""
         return self.browser.model
 
-    def join(self, look: Look | None = None) -> Browser:
+    @property
+    def column(self) -> ColumnModel:
+        """What the first browser shows beside the scene."""
+        return self.browser.column
+
+    def join(self, *, dark: bool = False, watching: bool = False) -> Browser:
         """Another browser looks at the session, and shows its newest state."""
-        browser = Browser(self.host, self.session, look or Look())
+        browser = Browser(self.host, self.session, dark=dark, watching=watching)
         self.browsers.append(browser)
         self.settle()
         return browser

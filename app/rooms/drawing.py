@@ -9,8 +9,10 @@ from collections.abc import Callable
 from contextvars import copy_context
 from typing import Any
 
+from app.rooms.showing import Showing
 from app.rooms.solver import Solver
-from app.rooms.telling import Telling
+from app.rooms.telling import Message, Telling
+from sims.kit.column import Column
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, Work, at_work
 from sims.kit.sim import Library, Sim
@@ -25,7 +27,7 @@ WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 
 
 class Drawing:
-    """Keeps what is seen up to the newest state, which `newest` knows.
+    """Keeps what is seen up to the newest state, which `newest` knows with its version.
 
     One task solves and draws. What arrives meanwhile replaces what was waiting: frames are dropped under load, never
     queued, and the last state always arrives. A state that can't be solved is told to `failed`.
@@ -33,13 +35,16 @@ class Drawing:
 
     def __init__(
         self, sim: Sim[Any, Any], params: Params, given: tuple[Library, ...], solver: Solver, turn: asyncio.Lock,
-        telling: Telling, newest: Callable[[], Params], failed: Callable[[Params, Exception], None],
+        telling: Telling, newest: Callable[[], tuple[Params, int]], failed: Callable[[Params, Exception], None],
     ) -> None:  # fmt: skip
         self.sim = sim
         self.solved = params
         self.solution: Any = None if sim.heavy else sim.solve(params, *given)
         """The solution of the state that is `solved`; None until what takes long is there."""
+        self.version = 0
+        """The version of the state that is solved."""
         self.viewers: set[Viewer] = set()
+        self._showing = Showing(Column(sim, given))
         self.task: asyncio.Task[None] | None = None
         """As long as something is to be drawn."""
         self._given = given
@@ -63,7 +68,11 @@ class Drawing:
         """Add a viewer and show it what is solved."""
         self.viewers.add(viewer)
         if self.solution is not None:
-            viewer.draw(self.solved, self.solution)
+            viewer.draw(self.solved, self.solution, self.version)
+
+    def everything(self) -> Message:
+        """What a page that comes shows beside the scene."""
+        return self._showing.everything(self.solved, self.solution, self.version)
 
     async def drawn(self, within: float | None = None) -> None:
         """Wait until nothing is to be drawn, at most for some seconds."""
@@ -77,11 +86,13 @@ class Drawing:
             while self._dirty:
                 self._dirty = False
                 try:
-                    await self._solve(self._newest())
+                    await self._solve(*self._newest())
                 except Superseded:
                     continue
                 for viewer in list(self.viewers) if self.solution is not None else ():
                     self._show(viewer)
+                if self._telling.listeners:
+                    self._telling.tell(self._showing.news(self.solved, self.solution, self.version))
                 self._drawn_at = time.monotonic()
                 self._telling.tell_state_soon()
         except Exception:
@@ -91,11 +102,11 @@ class Drawing:
             if reporting is not None:
                 reporting.cancel()
 
-    async def _solve(self, params: Params) -> None:
+    async def _solve(self, params: Params, version: int) -> None:
         """Bring the solution up to a state. Raises `Superseded`."""
         try:
             self.solution = await (self._work_out(params) if self.sim.heavy else self._at_once(params))
-            self.solved = params
+            self.solved, self.version = params, version
         except Superseded:
             raise
         except Exception as error:
@@ -125,7 +136,7 @@ class Drawing:
     def _show(self, viewer: Viewer) -> None:
         """Draw for one viewer; what goes wrong there is no matter of the others."""
         try:
-            viewer.draw(self.solved, self.solution)
+            viewer.draw(self.solved, self.solution, self.version)
         except Exception:
             log.exception("drawing %s for a viewer failed", self.sim.slug)
 
@@ -151,5 +162,5 @@ class Drawing:
 
     def _progress(self) -> dict[str, Any]:
         assert self.work is not None
-        cancel = self._newest() != self.before
+        cancel = self._newest()[0] != self.before
         return {"type": "work", "text": self.work.words, "done": self.work.done, "cancel": cancel}

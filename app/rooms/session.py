@@ -22,6 +22,8 @@ from app.rooms.motion import Motion, gliding
 from app.rooms.solver import Solver
 from app.rooms.telling import Listener, Message, Telling
 from app.trouble import Unknown, error_message
+from sims.kit.entered import entered, number, row
+from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
 from sims.kit.sim import Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
@@ -52,7 +54,7 @@ class Session:
         self.telling = Telling(self.state)
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
         self.drawing = Drawing(
-            sim, params, self.given, solver, turn, self.telling, lambda: self.params, self._not_solved
+            sim, params, self.given, solver, turn, self.telling, lambda: (self.params, self.version), self._not_solved
         )
         self.motion = Motion(self._following, lambda: self.params, self._show, self._failed)
         self._highlight = Highlight(self.telling)
@@ -99,6 +101,40 @@ class Session:
         ends = gliding(self.params, target)
         self._set(target.moved({name: getattr(self.params, name) for name in ends}))
         self.motion.begin(iter([Step(ends, seconds), Step(dict(target.__dict__), 0.0)]))
+
+    def slide(self, name: str, value: float) -> None:
+        """Take what a slider is moved to: of a parameter, or as `angles.2` of one of its entries."""
+        field, dot, part = name.partition(".")
+        kind = self.params.kinds.get(field)
+        sliders = [n for n, k in self.params.kinds.items() if isinstance(k, Slider | Numbers) and not k.hidden]
+        if field not in sliders or isinstance(kind, Slider) == bool(dot) or (dot and not part.isdecimal()):
+            raise Unknown("slider", name, sliders)
+        self.change({name: round(value) if isinstance(kind, Slider) and kind.whole else float(value)})
+
+    def enter(self, name: str, text: str) -> None:
+        """Take what was typed into a box, or chosen. Raises NotMeant where that says nothing that can be taken."""
+        if name.startswith("/"):
+            self._enter_place(name, text)
+            return
+        try:
+            changes = entered(self.sim.offers(self.params, self.solution, *self.given), name, text)
+        except LookupError:
+            raise Unknown("control, or nothing in it,", f"{name}: {text}", self.params.kinds) from None
+        self.change(changes)
+
+    def _enter_place(self, name: str, text: str) -> None:
+        """The same for a box, `/grip.2`, of where a node of the scene is; or for all three, `/grip`."""
+        handle, _, k = name.partition(".")
+        typed = next((each for each in self.sim.typed if each.handle == handle), None)
+        place = None if typed is None or self.solution is None else typed.place(self.params, self.solution)
+        if typed is None or place is None or k not in ("", "0", "1", "2"):
+            raise Unknown("place", name, [each.handle for each in self.sim.typed])
+        ranges = list(zip(typed.low, typed.high, strict=True))
+        if k:
+            at = number(text, ranges[int(k)], typed.unit)
+            self.drag(handle, (*place[: int(k)], at, *place[int(k) + 1 :]))
+        else:
+            self.drag(handle, row(text, ranges, typed.unit))
 
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels)."""
@@ -209,7 +245,8 @@ class Session:
         self.drawing.join(viewer)
 
     def listen(self, listener: Listener) -> None:
-        """Add a channel."""
+        """Add a channel, and tell it what to show."""
+        listener(self.drawing.everything())
         self.telling.listeners.add(listener)
 
     def leave(self, viewer: Viewer | None = None, listener: Listener | None = None) -> None:

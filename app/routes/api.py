@@ -194,7 +194,7 @@ def _add_solve(sim: AnySim) -> None:
             return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
 
         try:
-            found = await given.answers.find(_address(request), answer, _left(request)) if sim.heavy else answer()
+            found = await given.answers.find(address_of(request), answer, left(request)) if sim.heavy else answer()
         except GeometryError as error:
             known = error.argument if error.argument in sim.params.model_fields else ""
             item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
@@ -210,11 +210,11 @@ def _add_solve(sim: AnySim) -> None:
     )(solve)  # fmt: skip
 
 
-def _address(request: Request) -> str:
+def address_of(request: Request) -> str:
     return "" if request.client is None else request.client.host
 
 
-async def _left(request: Request) -> None:
+async def left(request: Request) -> None:
     """Ends when the caller has gone."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

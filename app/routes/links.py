@@ -14,7 +14,7 @@ from sims.kit.sim import Sim
 from sims.kit.spelling import clipped, meant, number_text
 
 Items = Sequence[tuple[str, str]]
-OPTIONS = ("view", "controls", "theme")
+OPTIONS = ("view", "controls", "theme", "only")
 """What every query may hold besides the sim's parameters."""
 TRACKING = re.compile(
     r"(utm|mtm|pk|hsa|matomo|piwik)_\w+|_ga|_gl|_hsenc|_hsmi|_openstat|dclid|fbclid|gad_(source|campaignid)|gbraid|gclid"
@@ -41,7 +41,7 @@ def parts(items: Items) -> Parts:
 def read(sim: Sim[Any, Any], items: Items) -> Params:
     """The state that a link names; its page options are checked too. Raises BadParams with all that is wrong."""
     given, options = parts(items)
-    wrong = _wrong(options)
+    wrong = _wrong(sim, options)
     kept = {name: text for name, text in options if name not in {complaint[0] for complaint in wrong}}
     try:
         params: Params = sim.params.from_query(given)
@@ -62,7 +62,7 @@ def spelled(query: dict[str, str]) -> str:
     return urlencode(query, safe=",-.:")
 
 
-def _wrong(options: Items) -> list[Complaint]:
+def _wrong(sim: Sim[Any, Any], options: Items) -> list[Complaint]:
     complaints = []
     names = [name for name, _ in options]
     for name, text in dict(options).items():
@@ -74,10 +74,19 @@ def _wrong(options: Items) -> list[Complaint]:
         elif name in WORDS and text not in WORDS[name]:
             allowed = " or ".join(WORDS[name])
             complaints.append(Complaint(name, clipped(text), allowed, meant(text, WORDS[name])))
+        elif name == "only" and (strange := [each for each in text.split(",") if each not in (known := controls(sim))]):
+            allowed = "some of these, with commas between: " + ", ".join(known)
+            complaints.append(Complaint(name, clipped(text), allowed, meant(strange[0], known)))
     return complaints
 
 
 WORDS = {"theme": ("light", "dark"), "controls": ("1", "0")}
+
+
+def controls(sim: Sim[Any, Any]) -> list[str]:
+    """What `only` may name: parameters that have a control, and actions."""
+    shown = [name for name, kind in sim.params.kinds.items() if not kind.hidden]
+    return [*shown, *(action.name for action in sim.actions)]
 
 
 def is_view(text: str) -> bool:

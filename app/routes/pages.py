@@ -19,6 +19,7 @@ from app.routes.services import Given, Services
 from geometry import GeometryError
 from sims import SIMS
 from sims.kit import viser_client
+from sims.kit.column import Column
 from sims.kit.params import Params
 from sims.kit.refusals import BadParams, Complaint
 from sims.kit.sim import Sim
@@ -89,14 +90,31 @@ def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str)
     """The page of a room, with control of it."""
     query = request.query_params.multi_items()
     params = links.read(sim, query)
+    session = None
     if request.method != "HEAD":  # nobody is there to use a session
         try:
-            params = _opened(given.sessions, sim, room, params, changes=bool(links.parts(query).params)).params
+            session = _opened(given.sessions, sim, room, params, changes=bool(links.parts(query).params))
+            params = session.params
         except GeometryError as error:  # of what no parameter's bounds exclude
-            wrong = Complaint(error.argument, clipped(error.received), error.allowed)
-            good = {name: text for name, text in params.query_items().items() if name != error.argument}
-            raise BadParams([wrong], good) from None
-    return rendering.viewer(request, sim, params, given.largest, room, key)
+            raise refusal_of(params, error) from None
+    return _page(request, given, sim, params, session, room, key)
+
+
+def refusal_of(params: Params, error: GeometryError) -> BadParams:
+    """What is wrong with a state that no parameter's bounds exclude, and that has no solution all the same."""
+    wrong = Complaint(error.argument, clipped(error.received), error.allowed)
+    return BadParams([wrong], {name: text for name, text in params.query_items().items() if name != error.argument})
+
+
+def _page(
+    request: Request, given: Services, sim: AnySim, params: Params, session: Session | None, room: str, key: str = ""
+) -> Response:
+    """The page of a room whose session, if it runs, says what its column begins with."""
+    options = dict(links.parts(request.query_params.multi_items()).options)
+    only = options["only"].split(",") if "only" in options else None
+    solution = session.solution if session is not None and session.drawing.solved == params else None
+    column = Column(sim, given.sessions.given(sim)).html(params, solution, only)
+    return rendering.viewer(request, sim, column, params, options, given.largest, room, key)
 
 
 def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
@@ -117,7 +135,8 @@ async def watched(request: Request, given: Given, slug: str, room: str) -> Respo
         raise HTTPException(404, "There is no such room.")
     sim = sim_or_404(slug)
     known = given.sessions.find(sim, room)
-    return rendering.viewer(request, sim, known.params if known else sim.params(), given.largest, room)
+    links.read(sim, request.query_params.multi_items())
+    return _page(request, given, sim, known.params if known else sim.params(), known, room)
 
 
 @page("/viser/{fingerprint}/{name}")

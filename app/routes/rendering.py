@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
-from dataclasses import asdict
 from typing import Any
 
 from fastapi import HTTPException, Request
@@ -15,9 +14,9 @@ from starlette.templating import Jinja2Templates
 from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
-from sims.kit.layout import LAYOUT
 from sims.kit.palette import DARK
 from sims.kit.params import Params
+from sims.kit.scene.view import FIELD
 from sims.kit.sim import Sim
 
 AnySim = Sim[Any, Any]
@@ -71,8 +70,11 @@ def render(request: Request, template: str, status: int = 200, **context: Any) -
     return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
 
 
-def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: str, key: str = "") -> Response:
-    """The page of a session in a state: viser's client with our companion. Without its key it only watches.
+def viewer(
+    request: Request, sim: AnySim, column: str, params: Params, options: dict[str, str], largest: int, room: str,
+    key: str = "",
+) -> Response:  # fmt: skip
+    """The page of a session in a state: viser's scene beside a column of ours. Without its key it only watches.
 
     The page alone holds the key: its address bar shows where anybody gets a room of their own in the same state.
     """
@@ -82,15 +84,17 @@ def viewer(request: Request, sim: AnySim, params: Params, largest: int, room: st
     view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
         "slug": sim.slug, "title": sim.title, "watching": not key,
-        "path": path, "address": f"{place}/embed" if key else path,
-        "view": [*view.position, *view.look_at], "radius": view.radius, "panes": sim.panes is not None,
+        "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
+        "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
         "files": None if sim.files is None else {"largest": largest},
         "label": {"ink": DARK.ink, "plate": DARK.page},
-        "layout": asdict(LAYOUT),
         "main": module(request, "main.js"), "client": f"{client}/loader.js",
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
-    response = render(request, "viewer.html", sim=sim, data=data, client=client, modules=modules())
+    response = render(
+        request, "viewer.html", sim=sim, data=data, client=client, modules=modules(), text=f"{place}/text",
+        column=column, bare=options.get("controls") == "0",
+    )  # fmt: skip
     response.headers["cache-control"] = "no-store"
     return response
 

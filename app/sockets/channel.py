@@ -12,7 +12,20 @@ from starlette.websockets import WebSocket
 
 from app.rooms.registry import Full, Sessions
 from app.rooms.session import Session
-from app.sockets.channel_messages import Act, Cancel, Get, Handle, Hello, Hover, Select, Set, View, decoder
+from app.sockets.channel_messages import (
+    Act,
+    Cancel,
+    Enter,
+    Get,
+    Handle,
+    Hello,
+    Hover,
+    Select,
+    Set,
+    Slide,
+    View,
+    decoder,
+)
 from app.sockets.commands import Commands
 from app.sockets.inbox import Ended, Inbox, Read, Strangers
 from app.sockets.outgoing import Outgoing
@@ -37,6 +50,8 @@ class Conversation:
         self._commands = Commands(session, visit.tell)
         self._does: dict[type, Callable[[Any], None]] = {
             Act: lambda act: self._commands.act(act.name),
+            Slide: lambda slide: self._commands.slide(slide.name, slide.value),
+            Enter: lambda enter: self._commands.enter(enter.name, enter.text),
             Cancel: lambda _: self._commands.attempt(session.cancel),
             Get: self._get,
             Handle: lambda handle: self._commands.hold(handle.name, (handle.x, handle.y)),
@@ -74,7 +89,7 @@ class Conversation:
     def _view(self, message: View) -> None:
         """Move this page's own view."""
         if self._visit.viewer is not None:
-            self._commands.attempt(self._visit.viewer.look_from, message.view, message.fit)
+            self._commands.attempt(self._visit.viewer.look_from, message.view)
 
     def _hover(self, message: Hover) -> None:
         """For the whole room; where somebody only watches, for their own eyes."""

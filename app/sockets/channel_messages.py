@@ -14,12 +14,9 @@ class Hello(msgspec.Struct, tag="hello", tag_field="type", forbid_unknown_fields
 
     dark: bool
     reduced: bool
-    width: int
-    controls: bool
     query: Annotated[str, msgspec.Meta(max_length=4000)]
     opened: Annotated[str, msgspec.Meta(max_length=4000)] = ""
     """The query that the page was opened with, to which a reset returns."""
-    height: int = 800
 
 
 class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fields=True):
@@ -28,6 +25,20 @@ class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fiel
     name: Annotated[str, msgspec.Meta(max_length=100)]
     x: Number
     y: Number
+
+
+class Slide(msgspec.Struct, tag="slide", tag_field="type", forbid_unknown_fields=True):
+    """A slider was moved."""
+
+    name: Annotated[str, msgspec.Meta(max_length=100)]
+    value: Number
+
+
+class Enter(msgspec.Struct, tag="enter", tag_field="type", forbid_unknown_fields=True):
+    """Something was typed into a box, or chosen."""
+
+    name: Annotated[str, msgspec.Meta(max_length=100)]
+    text: Annotated[str, msgspec.Meta(max_length=400)]
 
 
 class Set(msgspec.Struct, tag="set", tag_field="type", forbid_unknown_fields=True):
@@ -64,8 +75,6 @@ class View(msgspec.Struct, tag="view", tag_field="type", forbid_unknown_fields=T
     """The page looks from another place: viewpoint and looked-at place, x, y, z each."""
 
     view: Annotated[list[Number], msgspec.Meta(min_length=6, max_length=6)]
-    fit: bool = False
-    """As it fits the sim's first view; a scene that has found another one since fits that."""
 
 
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
@@ -74,4 +83,4 @@ class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=Tru
     solution: bool = False
 
 
-decoder = msgspec.json.Decoder(Hello | Handle | Set | Act | Hover | Select | Cancel | Get | View)
+decoder = msgspec.json.Decoder(Hello | Slide | Enter | Handle | Set | Act | Hover | Select | Cancel | Get | View)

@@ -8,7 +8,9 @@ from typing import Any, TypeVar
 from app.rooms.session import Session
 from app.trouble import Unknown, error_message, refused
 from app.values import shown, strict
+from sims.kit.entered import NotMeant
 from sims.kit.refusals import Complaint
+from sims.kit.types import Vector
 
 LONGEST_GLIDE = 60.0
 """Seconds."""
@@ -49,9 +51,21 @@ class Commands:
         else:
             session.glide(changes, seconds)
 
-    def change(self, changes: Mapping[str, Any]) -> None:
-        """Take changes from a control."""
-        self.attempt(self._session.change, changes)
+    def slide(self, name: str, value: float) -> None:
+        """Take what a slider is moved to."""
+        self._control(name, self._session.slide, name, value)
+
+    def enter(self, name: str, text: str) -> None:
+        """Take what was typed or chosen; what can't be taken is said beside its control."""
+        self._control(name, self._session.enter, name, text)
+
+    def _control(self, name: str, take: Callable[..., None], *given: Any) -> None:
+        try:
+            take(*given)
+        except NotMeant as error:
+            self._answer({**refused(str(error)), "control": name})
+        except Exception as error:
+            self._answer({**error_message(self._session.sim, error), "control": name})
 
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to."""
@@ -74,6 +88,10 @@ class Commands:
     def act(self, name: str) -> None:
         """Press a button."""
         self.attempt(self._session.act, name)
+
+    def home(self, position: Vector, look_at: Vector, radius: float) -> None:
+        """Tell the page that the scene is looked at from elsewhere at first, from now on."""
+        self._answer({"type": "home", "view": [*map(float, position), *map(float, look_at)], "radius": float(radius)})
 
     def select(self, name: str) -> None:
         """Select what is linked under a name."""

@@ -17,10 +17,10 @@ from app.rooms.registry import Full, Sessions
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Commands
 from app.sockets.inbox import Ended, Inbox, Read, Strangers
-from app.sockets.viser_messages import GuiUpdateMessage, decoder
+from app.sockets.viser_messages import decoder
 from app.sockets.visits import Visit, Visits, close
 from sims.kit.sim import Sim
-from sims.kit.viewer import Look, Viewer
+from sims.kit.viewer import Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
 
 log = logging.getLogger("sim3")
@@ -28,7 +28,7 @@ HELLO_WITHIN = 2.0
 """Seconds that the scene waits for what the channel says first."""
 SEEN_WITHIN = 30.0
 """Seconds that viser's websocket may be open before it shows something."""
-SILENT = Hello(False, False, 1280, True, "")
+SILENT = Hello(dark=False, reduced=False, query="")
 """What is taken for granted of a page that says nothing."""
 
 
@@ -40,13 +40,6 @@ class Link:
     seen: Callable[[], None]
     """To be called once it shows something."""
     viewer: Viewer | None = None
-    commands: Commands | None = None
-
-    def take(self, message: GuiUpdateMessage) -> bool:
-        """Give a value to its control, which viser needn't hear of; False if there is none that can take it."""
-        if self.viewer is None or self.commands is None:
-            return False
-        return bool(self.commands.attempt(self.viewer.input, message.uuid, message.updates.value))
 
 
 class SceneSockets:
@@ -112,10 +105,8 @@ class SceneSockets:
             return
         if link.visit.watching and message.commands:
             self._refusals["watching"] += 1
-        elif not isinstance(message, GuiUpdateMessage):
+        else:
             wire.feed(read.data, message.value_of)
-        elif not link.take(message):
-            self._refusals["value"] += 1
 
     async def _on_connect(self, client: viser.ClientHandle) -> None:
         wire = self._host.wire_of(client)
@@ -143,8 +134,7 @@ class SceneSockets:
         # A page whose first message is late may still bring its state.
         silent = visit.watching or not visit.hello.done()
         session = self._sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
-        look = Look(hello.dark, hello.controls, visit.watching, hello.width, hello.height)
-        link.commands = Commands(session, lambda message: visit.tell(message))
-        link.viewer = visit.viewer = Viewer(visit.sim, client, link.commands, look, session.params, session.given)
+        commands = Commands(session, lambda message: visit.tell(message))
+        link.viewer = visit.viewer = Viewer(visit.sim, client, commands, dark=hello.dark, watching=visit.watching)
         session.join(link.viewer)
         link.seen()

@@ -1,7 +1,7 @@
 """What a viewer may say to viser: the only message types and fields that pass the bridge.
 
-Everything else that viser's server would take (opening its public tunnel, setting any attribute of a control,
-sending files) is refused here. Values still go through Params, which knows each parameter's bounds.
+They are where it looks from, and drags and clicks in the scene. Everything else that viser's server would take
+(opening its public tunnel, setting any attribute of a control, sending files) is refused here.
 """
 
 from __future__ import annotations
@@ -51,15 +51,6 @@ class ViewerCameraMessage(Incoming, tag=True):
         return False
 
 
-class Value(msgspec.Struct, forbid_unknown_fields=True, gc=False):
-    value: bool | int | Finite | Text | Annotated[list[Finite], msgspec.Meta(max_length=32)]
-
-
-class GuiUpdateMessage(Incoming, tag=True):
-    uuid: Text
-    updates: Value
-
-
 class ScenePointerMessage(Incoming, tag=True):
     event_type: Literal["click"]
     ray_origin: Vec3
@@ -96,5 +87,5 @@ class SceneNodeDragMessage(Incoming, tag=True):
 
 
 decoder = msgspec.msgpack.Decoder(
-    ViewerCameraMessage | GuiUpdateMessage | ScenePointerMessage | SceneNodeClickMessage | SceneNodeDragMessage
+    ViewerCameraMessage | ScenePointerMessage | SceneNodeClickMessage | SceneNodeDragMessage
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sims.camera import actions
 from sims.camera.panes import panes
 from sims.camera.params import CameraParams
-from sims.camera.readouts import describe, readouts
+from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
 from sims.camera.scene import CameraScene
 from sims.camera.solution import CameraSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -29,7 +29,9 @@ SIM = Sim(
     params=CameraParams,
     solve=solve,
     scene=CameraScene,
+    caption=caption,
     readouts=readouts,
+    folds=(WORKED, ALL, MATRIX,),
     describe=describe,
     view=View((-4.28, -7.87, 4.4), (0.05, -0.37, -0.6), 3.3),
     panes=panes,

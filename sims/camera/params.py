@@ -14,6 +14,9 @@ Pixel = tuple[float, float]
 FARTHEST = 20.0
 
 
+LENS = "The rest of K"
+
+
 class CameraParams(Params):
     """State of the sim."""
 
@@ -27,15 +30,15 @@ class CameraParams(Params):
     """Whether what is farther away becomes smaller"""
     fx: Annotated[float, Slider(100, 2000, step=10, unit="px", symbol="fx", title="Focal length")] = 600
     """In pixel widths"""
-    fy: Annotated[float, Slider(100, 2000, step=10, unit="px", symbol="fy", title="Focal length")] = 600
+    fy: Annotated[float, Slider(100, 2000, step=10, unit="px", symbol="fy", title="Focal length", group=LENS)] = 600
     """In pixel heights"""
-    linked: Annotated[bool, Switch(title="Link fx and fy")] = True
+    linked: Annotated[bool, Switch(title="Link fx and fy", group=LENS)] = True
     """Moving one moves the other in proportion, as a zoom does"""
-    cx: Annotated[float, Slider(0, 640, step=1, unit="px", symbol="cx", title="Principal point")] = 320
+    cx: Annotated[float, Slider(0, 640, step=1, unit="px", symbol="cx", title="Principal point", group=LENS)] = 320
     """Where the optical axis meets the picture, from the left"""
-    cy: Annotated[float, Slider(0, 480, step=1, unit="px", symbol="cy", title="Principal point")] = 240
+    cy: Annotated[float, Slider(0, 480, step=1, unit="px", symbol="cy", title="Principal point", group=LENS)] = 240
     """Where the optical axis meets the picture, from the top"""
-    skew: Annotated[float, Slider(-200, 200, step=1, unit="px", symbol="s", title="Skew")] = 0
+    skew: Annotated[float, Slider(-200, 200, step=1, unit="px", symbol="s", title="Skew", group=LENS)] = 0
     """How far the pixel rows lean; zero in nearly every real camera"""
     position: Annotated[
         Place,
@@ -48,15 +51,15 @@ class CameraParams(Params):
     """About the camera's x; positive looks up"""
     roll: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="φ", title="Roll")] = 0
     """About the optical axis; positive turns the camera clockwise"""
-    selected: Annotated[Name, Choice(title="Point", labels=TITLES)] = "roof-near"
+    selected: Annotated[Name, Choice(title="Point", labels=TITLES, group="The point, step by step")] = "roof-near"
     """The point that is worked through; click one to choose it"""
-    show_rays: Annotated[bool, Switch(title="Rays")] = True
+    show_rays: Annotated[bool, Switch(title="Rays", group="Show")] = True
     """From the points in the picture to the camera"""
-    show_frustum: Annotated[bool, Switch(title="Frustum")] = True
+    show_frustum: Annotated[bool, Switch(title="Frustum", group="Show")] = True
     """What the picture can show of space"""
-    show_vanishing: Annotated[bool, Switch(title="Vanishing points")] = True
+    show_vanishing: Annotated[bool, Switch(title="Vanishing points", group="Show")] = True
     """Where the parallels of street and house meet"""
-    show_labels: Annotated[bool, Switch(title="Labels")] = True
+    show_labels: Annotated[bool, Switch(title="Labels", group="Show")] = True
     """Names of things in the scene"""
 
     def moved(self, changes: Mapping[str, Any]) -> Self:

@@ -9,23 +9,42 @@ import numpy as np
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, NamedPoint
 from sims.camera.world import NAMES, TITLES
-from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
 SAME = 1.0
 """Pixels within which two points are said to share a pixel."""
 BY = {"orthographic": "the depth of the house's middle", "weak": "the mean depth of all points"}
 
 
+WORKED, MATRIX, ALL = "The point, step by step", "P, and what it tells", "All points"
+IN_K = (("fx", "skew", "cx"), ("", "fy", "cy"), ("", "", ""))
+POSE = "pan tilt roll"
+IN_POSE = ((POSE, POSE, POSE, "position"),) * 3
+
+
+def caption(p: CameraParams, s: CameraSolution) -> str:
+    """What to do, or what to see."""
+    if s.frustum is None:
+        return "There is nothing to take the picture’s scale from: move or turn the camera."
+    if p.projection == "orthographic":
+        return "Without perspective what is far is as large as what is near: move away and see."
+    if p.projection == "weak":
+        return "One depth for everything: near and far things keep their sizes, but moving still changes them all."
+    return "Zoom, or move and turn the camera: see which entries of K and [R | t] change, and what the picture does."
+
+
 def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(p, s)
-    yield from _worked(p, s)
-    yield Formula("Intrinsics: camera axes to pixels", symbol("K"), mathml(s.K, 1))
+    yield Formula("Intrinsics: camera axes to pixels", symbol("K"), mathml(s.K, 1, links=IN_K))
     yield Formula(
         "Pose: world to camera axes",
         "<mrow><mo>[</mo><mi>R</mi><mo>|</mo><mi>t</mi><mo>]</mo></mrow>",
-        mathml(np.column_stack([s.R, s.t])),
+        mathml(np.column_stack([s.R, s.t]), links=IN_POSE),
     )
+    yield Fold(WORKED)
+    yield from _worked(p, s)
+    yield Fold(MATRIX)
     if s.P is not None:
         what = "K [R | t]" if s.scale_depth is None else "affine, its last row has no R"
         yield Formula(f"Projection: {what}", symbol("P"), mathml(s.P, 2))
@@ -36,6 +55,7 @@ def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
     yield from _taken_apart(s)
     if s.subject.height is not None:
         yield Formula("Height of the house in the picture", symbol("h"), mathml(s.subject.height, 1), "px")
+    yield Fold(ALL)
     yield _table(p, s)
 
 

@@ -81,6 +81,10 @@ class CameraInScene:
         self.figure = CameraFigure(stage, "/camera", "ink", "C")
         stage.axes("/camera/axes", 0.7, radius=0.016, letters=("x", "y", "z"))
         self.axis = stage.lines("/camera/axis", "ghost", width=1.5)
+        for parameter in ("fx", "fy", "cx", "cy", "skew"):
+            stage.linked(parameter, self.figure.edges)
+        for parameter in ("pan", "tilt", "roll"):
+            stage.linked(parameter, self.axis)
         self.far = stage.lines("/camera/far", "ghost", width=1.0)
         self.wires = stage.strokes("/camera/wires", ROLES, width=1.5)
         self.dots = stage.cloud("/camera/dots", "ink", size=0.022)

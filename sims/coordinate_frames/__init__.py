@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sims.coordinate_frames import actions
 from sims.coordinate_frames.params import GRIDS, FramesParams
-from sims.coordinate_frames.readouts import describe, readouts
+from sims.coordinate_frames.readouts import ALL, AXES, HOMOGENEOUS, caption, describe, readouts
 from sims.coordinate_frames.scene import FramesScene
 from sims.coordinate_frames.solution import FramesSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -27,7 +27,9 @@ SIM = Sim(
     params=FramesParams,
     solve=solve,
     scene=FramesScene,
+    caption=caption,
     readouts=readouts,
+    folds=(HOMOGENEOUS, ALL, AXES,),
     describe=describe,
     view=View((-2.7, -3.5, 2.15), (0.0, 0.0, 0.0), 1.85),
     actions=(

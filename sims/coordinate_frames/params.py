@@ -15,6 +15,9 @@ GRIDS = {"grid_xy": (0, 1), "grid_xz": (0, 2), "grid_yz": (1, 2)}
 BOUND = 5.0
 
 
+SHOW = "Show"
+
+
 class FramesParams(Params):
     """State of the sim. The axes may change while it runs: the point stays where it is, and reads anew."""
 
@@ -33,15 +36,15 @@ class FramesParams(Params):
     """In the axes of the convention; where w isn't 1, the point is these divided by w"""
     w: Annotated[float, Slider(0, 2, step=0.01, symbol="w", title="Fourth coordinate")] = 1
     """The point is (x/w, y/w, z/w); with w = 0 it is a direction"""
-    show_rule: Annotated[bool, Switch(title="Show hand")] = True
+    show_rule: Annotated[bool, Switch(title="Show hand", group=SHOW)] = True
     """The rule of the right hand, or of the left for left-handed axes"""
-    rule: Annotated[float, Slider(0, 1, step=0.01, title="Fingers")] = 1
+    rule: Annotated[float, Slider(0, 1, step=0.01, title="Fingers", group=SHOW)] = 1
     """How far the fingers have swept: 0 along X, 1 along Y"""
-    grid_xy: Annotated[bool, Switch(title="Grid XY")] = False
+    grid_xy: Annotated[bool, Switch(title="Grid XY", group=SHOW)] = False
     """The plane of X and Y, where z is zero"""
-    grid_xz: Annotated[bool, Switch(title="Grid XZ")] = False
+    grid_xz: Annotated[bool, Switch(title="Grid XZ", group=SHOW)] = False
     """The plane of X and Z, where y is zero"""
-    grid_yz: Annotated[bool, Switch(title="Grid YZ")] = False
+    grid_yz: Annotated[bool, Switch(title="Grid YZ", group=SHOW)] = False
     """The plane of Y and Z, where x is zero"""
 
     @property

@@ -7,21 +7,43 @@ from collections.abc import Iterable, Iterator
 from sims.coordinate_frames.conventions import NAMES, axes
 from sims.coordinate_frames.params import FramesParams
 from sims.coordinate_frames.solution import FramesSolution
-from sims.kit.readout import MINUS, THIN, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import MINUS, THIN, Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
 FAR = 1e5
 """Numbers from here on are told by their power of ten."""
 NOTHING = "(0, 0, 0, 0) is neither a point nor a direction: set one of the numbers."
 
 
+HOMOGENEOUS, ALL, AXES = "The fourth coordinate w", "All seven conventions", "Axes as a matrix"
+
+
+def caption(p: FramesParams, s: FramesSolution) -> str:
+    """What to do, or what to see."""
+    if s.axes_to is s.axes:
+        return "Choose a second convention: the same point gets other numbers, and T says how."
+    if s.cartesian is None:
+        return "With w = 0 this is a direction: T turns it, and nothing can move it."
+    return "One point, two sets of axes: drag it, and read it in both. T takes the first numbers to the second."
+
+
 def readouts(p: FramesParams, s: FramesSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield Note(f"{title(p, s)}: {directions(s)}. {_rule(s)}")
-    yield from _homogeneous(p, s)
-    yield _table(p, s)
-    yield Formula(f"{NAMES[p.to]} from {title(p, s)}", symbol("T", f"{p.to} {p.convention}"), mathml(s.matrix, 0))
+    there = "direction" if s.cartesian is None else "point"
+    for name, words in {p.convention: title(p, s), p.to: NAMES[p.to]}.items():
+        own = s.homogeneous[:3] if s.cartesian is None else s.cartesian
+        read = own if name == p.convention else s.coordinates[name]
+        yield Note(f"The {there} in {words}: {_triple(read.tolist())}")
+    T = mathml(s.matrix, 0, roles=("x", "y", "z"))
+    yield Formula(f"{NAMES[p.to]} from {title(p, s)}", symbol("T", f"{p.to} {p.convention}"), T, link="to")
     yield Formula(f"Its determinant: {_meaning(s)}", "<mi>det</mi><mi>T</mi>", mathml(s.determinant, 0))
-    yield Formula("Axes x, y, z as columns, in right, forward, up", symbol("B"), mathml(s.basis, 0))
+    yield Fold(HOMOGENEOUS)
+    yield from _homogeneous(p, s)
+    yield Fold(ALL)
+    yield _table(p, s)
+    yield Fold(AXES)
+    B = mathml(s.basis, 0, roles=("x", "y", "z"))
+    yield Formula("Axes x, y, z as columns, in right, forward, up", symbol("B"), B, link="convention")
     yield Formula(f"Its determinant: {s.handedness}-handed", "<mi>det</mi><mi>B</mi>", mathml(s.axes.sign, 0))
 
 

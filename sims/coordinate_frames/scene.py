@@ -52,6 +52,7 @@ class Box:
         self.node = stage.group(name)
         self.edges = [stage.lines(f"{name}/{axis}", axis, width=2.5, dash=DASHES[axis]) for axis in AXES]
         self.others = stage.strokes(f"{name}/others", ["ghost"] * 6, width=1.0)
+        stage.linked("point", *self.edges)
 
     def draw(self, corner: Array | None) -> None:
         self.node.show(corner is not None)
@@ -73,6 +74,7 @@ class Point:
         self.grip = stage.grip("/point", 0.06)
         self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-right")
         self.ray = stage.lines("/ray", "held", width=1.5)
+        stage.linked("w", self.ray)
         self.undivided = stage.ball("/undivided", 0.04, "ghost")
         stage.label("/undivided/label", "w = 1", (0.0, 0.0, -0.12))
         self.arrow = stage.arrows("/away", "held", radius=0.02)
@@ -131,9 +133,10 @@ class AxesFigure:
         self.third = stage.group(f"{name}/third")
         for axis, path, tip in zip(AXES, (name, name, f"{name}/third"), length * np.eye(3), strict=True):
             if ghost:
-                stage.lines(f"{path}/{axis}", axis, [np.zeros(3), tip], width=2.0, dash=DASHES[axis])
+                line = stage.lines(f"{path}/{axis}", axis, [np.zeros(3), tip], width=2.0, dash=DASHES[axis])
+                stage.linked("to", line)
             else:
-                stage.arrow(f"{path}/{axis}", axis, np.zeros(3), tip, radius=0.02)
+                stage.linked("convention", stage.arrow(f"{path}/{axis}", axis, np.zeros(3), tip, radius=0.02))
             stage.label(f"{path}/letter_{axis}", axis.upper() + mark, tip * (1.0 + 0.13 / length))
 
     def draw(self, axes: Axes) -> None:

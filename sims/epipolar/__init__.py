@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from sims.epipolar import actions, plan
 from sims.epipolar.panes import panes
-from sims.epipolar.params import EpipolarParams
-from sims.epipolar.readouts import describe, readouts
+from sims.epipolar.params import ESTIMATE, EpipolarParams
+from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
 from sims.epipolar.scene import EpipolarScene
 from sims.epipolar.solution import EpipolarSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -29,7 +29,9 @@ SIM = Sim(
     params=EpipolarParams,
     solve=solve,
     scene=EpipolarScene,
+    caption=caption,
     readouts=readouts,
+    folds=(MATRICES, LINES, POINTS, ESTIMATE,),
     describe=describe,
     view=View((4.2, -3.4, 3.9), (0.1, 1.9, 1.0), 2.7),
     panes=panes,
@@ -38,7 +40,9 @@ SIM = Sim(
         Action("converging", "Converging pair", "Both look at the points: lines fan out", actions.preset("converging")),
         Action("forward", "Forward motion", "One behind the other: epipoles in sight", actions.preset("forward")),
         Action("vertical", "Vertical pair", "One above the other: upright lines", actions.preset("vertical")),
-        Action("new-sample", "Estimate F, new noise", "From 12 points, with the next noise", actions.new_sample),
+        Action(
+            "new-sample", "Estimate F, new noise", "From 12 points, with the next noise", actions.new_sample, ESTIMATE
+        ),
         Action("clear-pick", "Clear picked pixel", "Takes the pixel and its line away", actions.clear_pick),
     ),
     handles={

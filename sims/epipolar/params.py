@@ -31,36 +31,44 @@ OTHERS: Array = np.array(
 """The points after the first, in the world: in sight of both cameras in each preset, and not on one plane."""
 
 
+CAMERAS, ESTIMATE = "The cameras", "F estimated from noisy points"
+"""Titles of folds."""
+
+
 class EpipolarParams(Params):
     """State of the sim."""
 
-    left: Annotated[Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera")] = LEFT
+    left: Annotated[
+        Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera", group=CAMERAS)
+    ] = LEFT
     """Centre of the left camera: X, Y, Z"""
-    right: Annotated[Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Right camera")] = (
-        RIGHT
-    )
+    right: Annotated[
+        Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Right camera", group=CAMERAS)
+    ] = RIGHT
     """Centre of the right camera: X, Y, Z"""
-    left_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Left pan")] = 0
+    left_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Left pan", group=CAMERAS)] = 0
     """Turn of the left camera about the vertical; positive is to its left"""
-    right_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Right pan")] = 0
+    right_pan: Annotated[float, Slider(-60, 60, step=0.5, unit="°", title="Right pan", group=CAMERAS)] = 0
     """Turn of the right camera about the vertical; positive is to its left"""
-    focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
+    focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length", group=CAMERAS)] = (
+        600
+    )
     """The same for both cameras"""
     point: Annotated[Place, Vector((-5.0, -3.0, -2.0), (5.0, 12.0, 5.0), step=0.01, unit="m", title="3D point")] = POINT
     """The first point, which you can also drag in the scene: X, Y, Z"""
     points: Annotated[int, Slider(1, 12, step=1, title="Points")] = 6
     """How many points are shown, the 3D point among them"""
-    show_plane: Annotated[bool, Switch(title="Show epipolar plane")] = True
+    show_plane: Annotated[bool, Switch(title="Show epipolar plane", group="Show")] = True
     """The plane through both camera centres and the 3D point"""
     show_all_lines: Annotated[bool, Switch(title="Show all epipolar lines")] = False
     """The lines of all points, and not of the 3D point alone"""
-    show_top: Annotated[bool, Switch(title="Show from above")] = True
+    show_top: Annotated[bool, Switch(title="Show from above", group="Show")] = True
     """A plan of the scene below the pictures"""
     selected: Annotated[int, NumberBox(1, 12, step=1, title="Selected point", hidden=True)] = 1
     """The point that is marked everywhere, by its number; 1 is the 3D point. A click chooses another"""
-    noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise")] = 0
+    noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise", group=ESTIMATE)] = 0
     """Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off"""
-    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample")] = 0
+    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample", group=ESTIMATE)] = 0
     """Seed of the noise: the same seed, the same noise"""
     pick: Annotated[
         str | None,

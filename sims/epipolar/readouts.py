@@ -7,10 +7,11 @@ from functools import lru_cache
 
 from sims.epipolar.drawing import in_picture
 from sims.epipolar.estimate import Estimate
-from sims.epipolar.params import OTHERS, EpipolarParams, Pixel
+from sims.epipolar.params import ESTIMATE, OTHERS, EpipolarParams, Pixel
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 
+MATRICES, LINES, POINTS = "F and E", "Lines and epipoles", "All points"
 RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
 RIGHT_LINE = "<msup><mi>l</mi><mo>′</mo></msup>"
 RIGHT_EPIPOLE = "<msup><mi>e</mi><mo>′</mo></msup>"
@@ -36,6 +37,17 @@ def short_trouble(s: EpipolarSolution) -> str | None:
     return "P is on the baseline: no one plane" if s.on_baseline else None
 
 
+def caption(p: EpipolarParams, s: EpipolarSolution) -> str:
+    """What to do, or what to see."""
+    if s.F is None:
+        return "Both cameras are at one place: pull them apart, and there is an epipolar plane again."
+    if s.picked is not None:
+        return f"The pixel that you picked in the {s.picked.side} picture lies on a ray, which is a line in the other."
+    if s.epipole_left_pixel is not None and in_picture(*s.epipole_left_pixel):
+        return "All lines run through the epipole: there each camera would see the other one."
+    return "Drag P, or click a pixel of one picture: its partner can only lie on one line of the other."
+
+
 def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(s)
@@ -47,10 +59,14 @@ def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
         yield Formula("Epipolar constraint", constraint, mathml(s.residual))
     if s.sampson is not None:
         yield Formula("Sampson distance of p and p′", symbol("d"), mathml(s.sampson), "px")
+    yield Fold(MATRICES)
     yield from _matrices(s)
+    yield Fold(LINES)
     yield from _lines(p, s)
     yield from _epipoles(s)
+    yield Fold(POINTS)
     yield _points(p, s)
+    yield Fold(ESTIMATE)
     yield from _estimate(p, s)
 
 
@@ -174,7 +190,8 @@ def describe(p: EpipolarParams, s: EpipolarSolution) -> str:
         f"{side} epipole {epipole_in_words(pixel)}"
         for side, pixel in (("left", s.epipole_left_pixel), ("right", s.epipole_right_pixel))
     ]
-    return "; ".join([*parts, f"baseline {quantity(s.baseline, 'm', 2)}"]) + "."
+    shown = "1 point" if p.points == 1 else f"{p.points} points"
+    return "; ".join([*parts, f"baseline {quantity(s.baseline, 'm', 2)}", shown]) + "."
 
 
 def epipole_in_words(pixel: Pixel | None) -> str:

@@ -33,6 +33,7 @@ class EpipolarScene:
         self.baseline_label = stage.label("/middle/label", "", (0.0, 0.0, -0.5))
         self.plane = stage.sheet("/plane", "held", opacity=0.16)
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
+        stage.linked("point", self.rays)
         self.others = [stage.ball(f"/points/{k}", SPOT, "ink") for k in range(2, len(OTHERS) + 2)]
         for k, (ball, place) in enumerate(zip(self.others, OTHERS.tolist(), strict=True), start=2):
             ball.pose(position=place)
@@ -116,6 +117,8 @@ class CameraInScene:
         self.pixel = stage.ball(f"{path}/pixel", 0.022, name)
         self.others = stage.cloud(f"{path}/others", name, size=0.016)
         self.line = stage.lines(f"{path}/line", other, width=3.0)
+        for parameter in (name, f"{name}_pan", "focal"):
+            stage.linked(parameter, self.figure.edges)
         self.stretch = stage.lines(f"{path}/stretch", other, width=1.2)
         self.all_lines = stage.lines(f"{path}/all_lines", other, width=1.0)
         self.picked_line = stage.lines(f"{path}/picked_line", "held", width=4.0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sims.euler_angles.actions import animate
 from sims.euler_angles.params import EulerParams
-from sims.euler_angles.readouts import describe, readouts
+from sims.euler_angles.readouts import FACTORS, FORMS, caption, describe, readouts
 from sims.euler_angles.scene import EulerScene
 from sims.euler_angles.solution import EulerSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -31,7 +31,9 @@ SIM = Sim(
     params=EulerParams,
     solve=solve,
     scene=EulerScene,
+    caption=caption,
     readouts=readouts,
+    folds=(FACTORS, FORMS),
     describe=describe,
     view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.9),
     actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),

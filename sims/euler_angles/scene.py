@@ -29,6 +29,7 @@ class EulerScene:
         self.befores = ["", *parents[:2]]
         self.arcs: list[Any] = []
         self.order = ""
+        self.names: tuple[str, ...] = ()
 
     def draw(self, p: EulerParams, s: EulerSolution) -> None:
         if p.order != self.order:
@@ -36,6 +37,12 @@ class EulerScene:
         for frame, arc, turn in zip(self.frames, self.arcs, s.turns, strict=True):
             frame.pose(turn.wxyz)
             arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
+        self.names = p.names
+
+    def highlight(self, name: str) -> None:
+        """Make the turn of an angle stand out, with the axis that it is about."""
+        for arc, angle in zip(self.arcs, self.names, strict=False):
+            arc.highlight(angle == name)
 
     def _rebuild(self, p: EulerParams) -> None:
         self.order = p.order
@@ -62,6 +69,7 @@ class Arc:
         self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
         self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
         self.locks = locks
+        self.current = False
         for lock in locks:
             region = stage.lines(f"{name}/lock{lock:.0f}", "warn", width=3.0, dash=(0.03, 0.03))
             region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
@@ -74,6 +82,7 @@ class Arc:
         self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
         for part in (self.line, self.start, self.end, self.label):
             part.show(visible)
+        self.current = turn.current
         self.axis.show(turn.current)
         self.label.pose(
             position=(
@@ -87,6 +96,11 @@ class Arc:
             lock = math.radians(min(self.locks, key=lambda v: abs(v - turn.applied)))
             self.warning.show(near_lock)
             self.warning.pose(position=(1.12 * self.radius * math.cos(lock), 1.12 * self.radius * math.sin(lock), 0.0))
+
+    def highlight(self, on: bool) -> None:
+        self.axis.show(on or self.current)
+        for part in (self.line, self.end):
+            part.stress(on)
 
     def remove(self) -> None:
         self.node.handle.remove()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sims.gimbal_lock import actions
 from sims.gimbal_lock.panes import panes
 from sims.gimbal_lock.params import GimbalParams
-from sims.gimbal_lock.readouts import describe, readouts
+from sims.gimbal_lock.readouts import RINGS, ROTATION, caption, describe, readouts
 from sims.gimbal_lock.scene import GimbalScene
 from sims.gimbal_lock.solution import GimbalSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -29,7 +29,9 @@ SIM = Sim(
     params=GimbalParams,
     solve=solve,
     scene=GimbalScene,
+    caption=caption,
     readouts=readouts,
+    folds=(RINGS, ROTATION,),
     describe=describe,
     view=View((3.6, -3.3, 1.7), (0.0, 0.0, -0.1), 1.9),
     panes=panes,
@@ -43,7 +45,10 @@ SIM = Sim(
             "try-lost", "Try to turn about the lost axis",
             "At lock: a ghost turns about it; see whether the rings can follow", actions.try_lost_axis,
         ),
-        Action("mark", "Mark this orientation", "Leave a ghost of the aircraft here, to compare with", actions.mark),
+        Action(
+            "mark", "Mark this orientation", "Leave a ghost of the aircraft here, to compare with", actions.mark,
+            "Show",
+        ),
     ),
     states={
         "turned": {"yaw": 30, "pitch": 35, "roll": -25},

@@ -23,9 +23,9 @@ class GimbalParams(Params):
     """Turn of the middle ring in the outer one, about its Y"""
     roll: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="φ", title="Inner roll")] = 0
     """Turn of the inner ring in the middle one, about its X; the aircraft is fixed in it"""
-    show_reach: Annotated[bool, Switch(title="Show reach")] = True
+    show_reach: Annotated[bool, Switch(title="Show reach", group="Show")] = True
     """The angular velocities that the three rings can make together"""
-    show_ghost: Annotated[bool, Switch(title="Show ghost")] = False
+    show_ghost: Annotated[bool, Switch(title="Show ghost", group="Show")] = False
     """A second aircraft at a marked orientation, to compare with"""
     ghost: Annotated[
         tuple[float, float, float], Vector(-180.0, 180.0, step=1, unit="°", title="Ghost", hidden=True)

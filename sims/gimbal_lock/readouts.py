@@ -7,12 +7,24 @@ from collections.abc import Iterator, Sequence
 
 from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.solution import Ghost, GimbalSolution, Reduced
-from sims.kit.readout import Formula, Note, Readout, figure, mathml, quantity, row, symbol
+from sims.kit.readout import Fold, Formula, Note, Readout, figure, mathml, quantity, row, symbol
 
 SAME = 0.005
 """Degrees between two orientations that count as one."""
 STILL = 1e-9
 """Ring rates, for 1°/s, that count as none."""
+
+
+RINGS, ROTATION = "How far from lock", "The rotation"
+
+
+def caption(p: GimbalParams, s: GimbalSolution) -> str:
+    """What to do, or what to see."""
+    if s.lost_axis is not None:
+        return "Two rings now turn about one line. Move yaw, then roll: they do the same, and one way to turn is gone."
+    if s.near:
+        return "Bring the middle ring to 90°, and see the ellipsoid flatten: what the rings can do shrinks to a disc."
+    return "Three rings, three ways to turn. Move the middle one towards 90° and watch the axes of the other two."
 
 
 def readouts(p: GimbalParams, s: GimbalSolution) -> Iterator[Readout]:
@@ -21,13 +33,19 @@ def readouts(p: GimbalParams, s: GimbalSolution) -> Iterator[Readout]:
     if s.ghost is not None:
         yield _beside_ghost(p, s, s.ghost)
     yield Formula("Degrees of freedom: singular values that aren't zero", symbol("dof"), mathml(s.dof, 0))
-    yield Formula("Singular values of J", symbol("σ"), row(s.singular_values.tolist()))
-    yield Formula("Conditioning: |det J| = |cos θ|", symbol("c"), mathml(s.conditioning))
-    yield Formula("Ring axes in the world: outer, middle, inner", symbol("J"), mathml(s.axes))
-    yield _effort(s)
-    yield Formula("Rotation: Rz(ψ) Ry(θ) Rx(φ)", symbol("R"), mathml(s.R))
+    links = (("yaw", "pitch", "roll"),) * 3
+    yield Formula(
+        "Ring axes in the world: outer, middle, inner", symbol("J"),
+        mathml(s.axes, roles=("z", "y", "x"), links=links),
+    )  # fmt: skip
     if s.reduced is not None:
         yield from _reduced(s.reduced)
+    yield Fold(RINGS)
+    yield Formula("Singular values of J", symbol("σ"), row(s.singular_values.tolist()))
+    yield Formula("Conditioning: |det J| = |cos θ|", symbol("c"), mathml(s.conditioning))
+    yield _effort(s)
+    yield Fold(ROTATION)
+    yield Formula("Rotation: Rz(ψ) Ry(θ) Rx(φ)", symbol("R"), mathml(s.R, roles=("x", "y", "z")))
 
 
 def _status(s: GimbalSolution) -> Note:
@@ -37,7 +55,7 @@ def _status(s: GimbalSolution) -> Note:
     if s.near:
         rate = quantity(s.effort, "°/s", 1)
         return Note(f"Near gimbal lock: for 1°/s about the weakest axis, two rings must turn at {rate}.", "near")
-    return Note(f"No lock: the smallest singular value is {least}.")
+    return Note(f"The smallest singular value of J is {least}: far from 0, and far from lock.")
 
 
 def _beside_ghost(p: GimbalParams, s: GimbalSolution, ghost: Ghost) -> Note:

@@ -72,8 +72,9 @@ class GimbalScene:
         along = np.eye(3)["xyz".index(ring.letter)]
         tip = TIPS[ring.letter]
         ends = [-TIPS["x"] * along, (tip - 0.1) * along]
-        stage.lines(f"{holder}/axis", ring.letter, ends, width=WIDTHS[ring.letter], dash=DASHES[ring.letter])
-        stage.arrow(f"{holder}/tip", ring.letter, (tip - 0.14) * along, tip * along, radius=0.02)
+        axis = stage.lines(f"{holder}/axis", ring.letter, ends, width=WIDTHS[ring.letter], dash=DASHES[ring.letter])
+        arrow = stage.arrow(f"{holder}/tip", ring.letter, (tip - 0.14) * along, tip * along, radius=0.02)
+        stage.linked({"z": "yaw", "y": "pitch", "x": "roll"}[ring.letter], axis, arrow)
         return stage.label(f"{holder}/label", "", (tip + BEYOND) * along, anchor=ANCHORS[ring.letter])
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:

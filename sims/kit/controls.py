@@ -1,216 +1,254 @@
-"""viser's controls of a sim's parameters: one for each kind of field, made from what the kind says."""
+"""The controls of a sim's parameters, as HTML: one for each kind of field, made from what the kind says.
+
+Each input has a name: that of its parameter, or, where a parameter has several inputs, with what it is of: `point.2`
+is the third number, `axis:preset` what chooses one of its presets. `values` says what each input shows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from decimal import Decimal
-from typing import Any, Protocol
-
-import viser
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from typing import Any
 
 from sims.kit import fields
-from sims.kit.entries import Entries
 from sims.kit.offers import Offers
-from sims.kit.params import Params
-from sims.kit.sim import Typed
-from sims.kit.viser_internals import set_property, set_value
+from sims.kit.spelling import shown_number, spell
 
 OTHER = "another"
 """What a list of presets shows for a value that isn't one of them."""
-Change = Callable[[Mapping[str, Any]], None]
+SHORT = 34
+"""Letters that the words of a choice may have together to stand side by side."""
+LETTERS = {2: "uv", 3: "xyz", 4: "wxyz"}
 AnyOffers = Offers[Any]
-Listen = Callable[[Any, Callable[[Any], None]], None]
-"""Told of a handle, and of what takes the values that a page sets it to."""
+Shown = float | str | bool | None
 
 
-class Control(Protocol):
-    """What shows a parameter, and is told of each state."""
-
-    def draw(self, offers: AnyOffers) -> None: ...
-
-    def reword(self, offers: AnyOffers) -> None:
-        """Adapt label, bounds and what is offered, before a value that needs them is drawn."""
+def key(value: Any) -> str:
+    """A value that is chosen, as the page tells it; absent is empty."""
+    return "" if value is None else spell(value)
 
 
-def controls(
-    gui: viser.GuiApi,
-    offers: AnyOffers,
-    name: str,
-    *,
-    disabled: bool,
-    listen: Listen,
-    change: Change,
-) -> Iterator[Control]:
-    """Make the controls of a parameter; what a page sets them to is told to `change`."""
-    shared = {"hint": type(offers.params).model_fields[name].description, "disabled": disabled}
+def unit_of(kind: fields.Kind) -> str:
+    """The unit of a kind's numbers."""
+    return kind.unit if isinstance(kind, fields.Numeric) else ""
+
+
+def letters(kind: fields.Vector) -> Sequence[str]:
+    """What each number of a vector is called."""
+    return LETTERS.get(len(kind.each)) or [str(k + 1) for k in range(len(kind.each))]
+
+
+def values(offers: AnyOffers) -> dict[str, Shown]:
+    """What each input shows in a state."""
+    found: dict[str, Shown] = {}
+    params = offers.params
+    for name, kind in params.kinds.items():
+        if kind.hidden:
+            continue
+        value = getattr(params, name)
+        match kind:
+            case fields.Vector():
+                for k, entry in enumerate(value or ()):
+                    found[f"{name}.{k}"] = entry
+                if kind.presets:
+                    found[f"{name}:preset"] = next((w for w, v in kind.presets.items() if v == value), "")
+            case fields.Numbers() | fields.Letters():
+                for k, entry in enumerate(offers.entries(name)):
+                    found[f"{name}.{k}"] = entry
+            case fields.Switch() | fields.Slider() | fields.NumberBox():
+                found[name] = value
+            case _:
+                found[name] = key(value)
+    return found
+
+
+def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
+    """The controls of a parameter, which show its value where they are `filled`."""
     kind = offers.params.kinds[name]
-    if isinstance(kind, fields.Numbers | fields.Letters):
-        yield Entries(gui, offers, name, shared, listen, change)
-        return
-    control = _control(gui, offers, name, kind, shared)
-    listen(control.handle, lambda shown: change({name: control.value(shown)}))
-    yield control
-    if isinstance(kind, fields.Vector) and kind.presets:
-        presets = kind.presets
-        label = f"{kind.title}: preset"
-        handle = gui.add_dropdown(label, (*presets, OTHER), hint="Values to choose from", disabled=disabled)
-        listen(handle, lambda shown: change({name: presets[shown]} if shown in presets else {}))
-        yield Preset(name, handle, {value: word for word, value in presets.items()})
-
-
-def _control(gui: viser.GuiApi, offers: AnyOffers, name: str, kind: fields.Kind, shared: Any) -> Single:
-    label, value = worded(offers, name), getattr(offers.params, name)
+    value = getattr(offers.params, name) if filled else None
+    about = type(offers.params).model_fields[name].description or ""
+    label = offers.label(name)
     match kind:
         case fields.Switch():
-            return Single(name, gui.add_checkbox(label, value, **shared), label)
+            return switch(name, label, bool(value), about)
         case fields.Vector():
-            least, greatest = zip(*kind.each, strict=True)
-            add: Any = gui.add_vector2 if len(kind.each) == 2 else gui.add_vector3
-            return Single(name, add(label, value, min=least, max=greatest, step=kind.step, **shared), label)
+            return _vector(name, kind, label, value, about)
+        case fields.Numbers():
+            return "".join(_entries(offers, name, kind, filled, about))
+        case fields.Letters():
+            return "".join(_letters(offers, name, kind, filled, about))
         case fields.Slider():
-            return Slider.made(gui, offers, name, label, shared)
+            default = type(offers.params).model_fields[name].default
+            inside = slider(
+                name, label, value, offers.bounds(name), offers.increment(name), kind.unit, default,
+                offers.params.regions().get(name, ()),
+            )  # fmt: skip
+            return control(name, label, inside, about, kind="s3-line", target=f"s-{name}")
         case fields.NumberBox():
-            return NumberBox.made(gui, offers, name, label, shared)
-        case _:
-            return Dropdown.made(gui, offers, name, label, shared)
+            inside = box(name, label, value, kind.unit, offers.increment(name), steps=True)
+            return control(name, label, inside, about, kind="s3-one", target=f"b-{name}")
+    return _choice(offers, name, label, key(value) if filled else None, about)
 
 
-@dataclass
-class Single:
-    """A control of one field."""
-
-    name: str
-    handle: Any
-    label: str
-
-    def draw(self, offers: AnyOffers) -> None:
-        set_value(self.handle, self.shown(getattr(offers.params, self.name)))
-
-    def shown(self, value: Any) -> Any:
-        """What the control says for a value."""
-        return value
-
-    def value(self, shown: Any) -> Any:
-        """What the learner set. Raises LookupError for what isn't offered."""
-        return shown
-
-    def reword(self, offers: AnyOffers) -> None:
-        if (label := worded(offers, self.name)) != self.label:
-            self.label = self.handle.label = label
+def control(name: str, label: str, inside: str, about: str, *, kind: str = "", target: str = "") -> str:
+    """A control with its label, what it means, and room for what is wrong with what somebody entered."""
+    ident = ident_of(name)
+    words = (
+        f'<label for="{ident_of(target)}">{_worded(label)}</label>'
+        if target
+        else f'<span class="s3-name" id="n-{ident}">{_worded(label)}</span>'
+    )
+    ask, why = asked(ident, label, about)
+    group = "" if target else f' role="group" aria-labelledby="n-{ident}"'
+    link = escape(name)
+    return (
+        f'<div class="s3-control {kind}" data-control="{escape(name)}" data-link="{link}"{group}>'
+        f'<div class="s3-label">{words}{ask}</div>{inside}{why}<p class="s3-wrong" role="alert" hidden=""></p></div>'
+    )
 
 
-@dataclass
-class Slider(Single):
-    """Its bounds and steps may change with the state."""
-
-    bounds: tuple[float, float]
-    increment: float
-
-    @classmethod
-    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> Slider:
-        bounds, increment = offers.bounds(name), offers.increment(name)
-        handle = gui.add_slider(label, *bounds, increment, getattr(offers.params, name), **shared)
-        return cls(name, handle, label, bounds, increment)
-
-    def reword(self, offers: AnyOffers) -> None:
-        if (bounds := offers.bounds(self.name)) != self.bounds:
-            self.bounds = bounds
-            self.handle.min, self.handle.max = bounds
-        if (increment := offers.increment(self.name)) != self.increment:
-            self.increment = self.handle.step = increment
-            self.handle.precision = decimals(increment)
-        super().reword(offers)
+def asked(ident: str, label: str, about: str) -> tuple[str, str]:
+    """A button that asks what something is, and the answer, which is hidden at first."""
+    if not about:
+        return "", ""
+    ask = (
+        f'<button type="button" class="s3-ask" aria-expanded="false" aria-controls="w-{ident}"'
+        f' aria-label="About {escape(label)}">?</button>'
+    )
+    return ask, f'<p class="s3-why" id="w-{ident}" hidden="">{escape(about)}.</p>'
 
 
-@dataclass
-class NumberBox(Single):
-    """A number that may be absent has a box in which one step below the least value stands for that."""
-
-    absent: float | None
-
-    @classmethod
-    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> NumberBox:
-        (low, high), step = offers.bounds(name), offers.increment(name)
-        absent: float | None = None
-        if type(offers.params).model_fields[name].default is None:
-            low = absent = low - step
-        value = getattr(offers.params, name)
-        add: Any = gui.add_number  # its type wants the numbers all whole, or none
-        handle = add(label, absent if value is None else value, min=low, max=high, step=step, **shared)
-        return cls(name, handle, label, absent)
-
-    def shown(self, value: Any) -> Any:
-        return self.absent if value is None else value
-
-    def value(self, shown: Any) -> Any:
-        return None if self.absent is not None and shown == self.absent else shown
+def ident_of(name: str) -> str:
+    """What stands for a name in an identifier of the page."""
+    return name.replace("/", "-").replace(".", "-").replace(":", "-")
 
 
-@dataclass
-class Dropdown(Single):
-    """Offers what the state's `options` say."""
-
-    offered: Mapping[Any, str]
-
-    @classmethod
-    def made(cls, gui: viser.GuiApi, offers: AnyOffers, name: str, label: str, shared: Any) -> Dropdown:
-        offered = offers.options(name)
-        value = offered[getattr(offers.params, name)]
-        return cls(
-            name, gui.add_dropdown(label, tuple(offered.values()), initial_value=value, **shared), label, offered
-        )
-
-    def shown(self, value: Any) -> Any:
-        return self.offered[value]
-
-    def value(self, shown: Any) -> Any:
-        return {words: value for value, words in self.offered.items()}[shown]
-
-    def reword(self, offers: AnyOffers) -> None:
-        if (offered := offers.options(self.name)) != self.offered:
-            self.offered = offered
-            set_property(self.handle, "options", tuple(offered.values()))
-        super().reword(offers)
+def slider(
+    name: str, label: str, value: float | None, bounds: tuple[float, float], step: float, unit: str,
+    default: Any = None,
+    regions: Sequence[tuple[float, float]] = (),
+) -> str:  # fmt: skip
+    """A slider with its number; `regions` are marked on its track."""
+    low, high = bounds
+    span = (high - low) or 1.0
+    marks = "".join(
+        f'<i class="s3-region" style="left:{100 * (a - low) / span:.3f}%;width:{100 * (b - a) / span:.3f}%"></i>'
+        for a, b in regions
+    )
+    home = f' data-default="{default!r}"' if isinstance(default, int | float) else ""
+    at = "" if value is None else f' value="{value!r}"'
+    return (
+        f'<div class="s3-slide"><span class="s3-track">{marks}<input type="range" id="s-{ident_of(name)}"'
+        f' data-slide="{escape(name)}" min="{low!r}" max="{high!r}" step="any" data-step="{step!r}"{home}{at}/></span>'
+        f"{box(name, label, value, unit, step)}</div>"
+    )
 
 
-@dataclass
-class Preset:
-    """A dropdown beside another control, with names for some of its values."""
-
-    name: str
-    handle: Any
-    words: Mapping[Any, str]
-
-    def draw(self, offers: AnyOffers) -> None:
-        set_value(self.handle, self.words.get(getattr(offers.params, self.name), OTHER))
-
-    def reword(self, offers: AnyOffers) -> None:
-        """Its words don't depend on the state."""
-
-
-@dataclass
-class TypedPlace:
-    """Three numbers that set what dragging a node sets; hidden while there is no such place."""
-
-    typed: Typed[Any, Any]
-    handle: Any
-    visible: bool = True
-
-    def draw(self, params: Params, solution: Any) -> None:
-        place = self.typed.place(params, solution)
-        set_value(self.handle, place or (0.0, 0.0, 0.0))
-        if self.visible != (place is not None):
-            self.visible = self.handle.visible = place is not None
+def box(name: str, label: str, value: float | None, unit: str, step: float, *, steps: bool = False) -> str:
+    """A number that is typed; with `steps`, buttons beside it go one step down or up."""
+    says = f"{label}, number" + (f" in {unit}" if unit else "")
+    text = "" if value is None else shown_number(value)
+    buttons = [
+        f'<button type="button" data-nudge="{sign}" aria-label="{words} {escape(label)}">{shown}</button>'
+        for sign, words, shown in ((-1, "One less:", "−"), (1, "One more:", "+"))
+    ] if steps else ["", ""]  # fmt: skip
+    return (
+        f'<span class="s3-box">{buttons[0]}<input type="text" id="b-{ident_of(name)}" data-box="{escape(name)}"'
+        f' data-step="{step!r}" aria-label="{escape(says)}" value="{text}" placeholder="–"'
+        ' autocomplete="off" spellcheck="false"/>'
+        + (f'<span class="s3-unit">{escape(unit)}</span>' if unit else "")
+        + f"{buttons[1]}</span>"
+    )
 
 
-def worded(offers: AnyOffers, name: str) -> str:
-    """The label of a control, with its unit."""
-    kind = offers.params.kinds[name]
-    unit = kind.unit if isinstance(kind, fields.Numeric) else ""
-    return f"{offers.label(name)} ({unit})" if unit else offers.label(name)
+def switch(name: str, label: str, value: bool, about: str) -> str:
+    """On or off."""
+    ident = ident_of(name)
+    ask, why = asked(ident, label, about)
+    on = ' checked=""' if value else ""
+    return (
+        f'<div class="s3-control s3-switch" data-control="{escape(name)}" data-link="{escape(name)}">'
+        f'<div class="s3-label"><label><input type="checkbox" role="switch" data-switch="{escape(name)}"{on}/>'
+        f' {_worded(label)}</label>{ask}</div>{why}<p class="s3-wrong" role="alert" hidden=""></p></div>'
+    )
 
 
-def decimals(increment: float) -> int:
-    """How many decimals a slider of such steps needs."""
-    return min(max(-int(Decimal(f"{increment:.3g}").normalize().as_tuple().exponent), 0), 9)
+def select(name: str, label: str, options: Mapping[str, str], chosen: str | None) -> str:
+    """One of several words, as a list that opens."""
+    inside = "".join(
+        f'<option value="{escape(value)}"{_if(value == chosen, "selected")}>{escape(words)}</option>'
+        for value, words in options.items()
+    )
+    ident = ident_of(name)
+    return f'<select id="s-{ident}" data-choice="{escape(name)}" aria-label="{escape(label)}">{inside}</select>'
+
+
+def radios(name: str, options: Mapping[str, str], chosen: str | None) -> str:
+    """One of a few short words, side by side."""
+    inside = "".join(
+        f'<label><input type="radio" name="{escape(name)}" data-choice="{escape(name)}" value="{escape(value)}"'
+        f"{_if(value == chosen, 'checked')}/><span>{escape(words)}</span></label>"
+        for value, words in options.items()
+    )
+    return f'<div class="s3-radios">{inside}</div>'
+
+
+def vector(
+    name: str, label: str, entries: Sequence[str], values: Sequence[float | None], unit: str, step: float
+) -> str:
+    """Several numbers that belong together, each with its letter."""
+    boxes = "".join(
+        f'<span class="s3-entry s3-letter-{escape(letter)}"><i aria-hidden="true">{escape(letter)}</i>'
+        f"{box(f'{name}.{k}', f'{label}, {letter}', value, '', step)}</span>"
+        for k, (letter, value) in enumerate(zip(entries, values, strict=True))
+    )
+    return f'<div class="s3-vector" data-vector="{escape(name)}">{boxes}' + (
+        f'<span class="s3-unit">{escape(unit)}</span></div>' if unit else "</div>"
+    )
+
+
+def _vector(name: str, kind: fields.Vector, label: str, value: Any, about: str) -> str:
+    inside = vector(name, label, letters(kind), value or (None,) * len(kind.each), kind.unit, kind.step)
+    if kind.presets:
+        chosen = next((words for words, preset in kind.presets.items() if preset == value), "")
+        inside += select(f"{name}:preset", f"{label}: preset", {"": OTHER, **{w: w for w in kind.presets}}, chosen)
+    return control(name, label, inside, about, kind="s3-line")
+
+
+def _choice(offers: AnyOffers, name: str, label: str, chosen: str | None, about: str) -> str:
+    options = {key(value): words for value, words in offers.options(name).items()}
+    if 1 < len(options) <= 3 and sum(map(len, options.values())) <= SHORT:
+        return control(name, label, radios(name, options, chosen), about, kind="s3-few")
+    return control(name, label, select(name, label, options, chosen), about, kind="s3-one", target=f"s-{name}")
+
+
+def _entries(offers: AnyOffers, name: str, kind: fields.Numbers, filled: bool, about: str) -> Iterator[str]:
+    defaults = type(offers.params).model_fields[name].default
+    for k, value in enumerate(offers.entries(name)):
+        entry, label = f"{name}.{k}", offers.entry_label(name, k)
+        default = defaults[k] if k < len(defaults) else None
+        at = value if filled else None
+        inside = slider(entry, label, at, offers.bounds(name), offers.increment(name), kind.unit, default)
+        yield control(entry, label, inside, "" if k else about, kind="s3-line", target=f"s-{entry}")
+
+
+def _letters(offers: AnyOffers, name: str, kind: fields.Letters, filled: bool, about: str) -> Iterator[str]:
+    for k, value in enumerate(offers.entries(name)):
+        entry, label = f"{name}.{k}", offers.entry_label(name, k)
+        inside = select(entry, label, kind.labels, value if filled else None)
+        yield control(entry, label, inside, "" if k else about, kind="s3-one", target=f"s-{entry}")
+
+
+def _if(so: bool, attribute: str) -> str:
+    """An attribute that is there or not."""
+    return f' {attribute}=""' if so else ""
+
+
+def _worded(label: str) -> str:
+    """A label, with the symbol in it as in a formula."""
+    words = [f"<var>{escape(word)}</var>" if _is_symbol(word) else escape(word) for word in label.split(" ")]
+    return " ".join(words)
+
+
+def _is_symbol(word: str) -> bool:
+    return word in {"fx", "fy", "cx", "cy"} or (len(word) == 1 and (word.islower() or "α" <= word <= "ω"))

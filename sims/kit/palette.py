@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -102,10 +102,6 @@ class Palette:
     def line(self, role: str) -> RGB:
         """What to send for lines and arrows of a role, so that they show in the role's colour."""
         return before_tone_mapping(getattr(self, role), linear=True)
-
-    def style(self) -> str:
-        """CSS custom properties (`--x: #…`) for an image pane."""
-        return ";".join(f"--{f.name}:{getattr(self, f.name)}" for f in fields(self) if f.name != "dark")
 
 
 LIGHT = Palette(

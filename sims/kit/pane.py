@@ -7,7 +7,8 @@ pixel centres, so the picture's edge runs from -0.5 to width - 0.5.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -224,11 +225,24 @@ def _linked(link: str) -> str:
     return f' data-link="{safe(link)}"' if link else ""
 
 
-def render(panes: Sequence[Pane], style: str) -> str:
-    """All panes of a sim as one piece of HTML; `style` carries the palette."""
-    figures = "".join(
-        f'<figure class="s3-pane{" s3-wide" if p.wide else ""}"><figcaption>{escape(p.title)}'
-        f"<span> {escape(p.note)}</span></figcaption>{p.svg}</figure>"
-        for p in panes
+def figure(pane: Pane) -> str:
+    """Where a pane goes."""
+    return f'<figure class="s3-pane{" s3-wide" if pane.wide else ""}" data-part="pane:{escape(pane.name)}"></figure>'
+
+
+def still(pane: Pane) -> str:
+    """Its picture for a page on which nothing can be held: marks that could be are said as places."""
+    svg = re.sub(r' (data-(handle|pick)|tabindex|aria-roledescription)="[^"]*"', "", pane.svg)
+    return (
+        svg.replace('role="application"', 'role="img"')
+        .replace('role="button"', 'role="img"')
+        .replace(" Arrow keys move it.", "")
     )
-    return f'<div class="s3-panes" style="{style}">{figures}</div>'
+
+
+def content(pane: Pane) -> str:
+    """What is in its frame."""
+    title = safe(pane.title)
+    larger = f'<button type="button" data-s3="enlarge" aria-label="{title}: larger" title="Large or small">⤢</button>'
+    note = f"<span> {escape(pane.note)}</span>"
+    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.svg}"

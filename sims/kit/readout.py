@@ -32,26 +32,44 @@ def _number(value: float, digits: int) -> str:
     return f"<mn>{figure(value, digits)}</mn>"
 
 
-def mathml(value: Any, digits: int = 3) -> str:
-    """A number, vector (as a column) or matrix in MathML."""
+Links = tuple[tuple[str, ...], ...]
+"""By rows: what each entry of a matrix is highlighted with, several names with blanks between; empty for nothing."""
+
+
+def mathml(value: Any, digits: int = 3, *, roles: tuple[str, ...] = (), links: Links = ()) -> str:
+    """A number, vector (as a column) or matrix in MathML.
+
+    `roles` are colours of the palette for a matrix's columns, with lines like those of the axes as a second cue.
+    """
     array = np.asarray(value, dtype=float)
-    return _mathml(array.shape, array.tobytes(), digits)
+    return _mathml(array.shape, array.tobytes(), digits, roles, links)
 
 
 @lru_cache(maxsize=512)
-def _mathml(shape: tuple[int, ...], numbers: bytes, digits: int) -> str:
+def _mathml(shape: tuple[int, ...], numbers: bytes, digits: int, roles: tuple[str, ...], links: Links) -> str:
     """As `mathml`; most matrices of a state were in the state before it too."""
-    return _layout(shape) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
+    return _layout(shape, roles, links) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
 
 
-@lru_cache(maxsize=32)
-def _layout(shape: tuple[int, ...]) -> str:
+@lru_cache(maxsize=128)
+def _layout(shape: tuple[int, ...], roles: tuple[str, ...], links: Links) -> str:
     """MathML with a place for each figure of a number (), column (n,) or matrix (n, m)."""
     if not shape:
         return "<mn>%s</mn>"
     rows, columns = (*shape, 1)[:2]
-    body = ("<mtr>" + "<mtd><mn>%s</mn></mtd>" * columns + "</mtr>") * rows
+    body = ""
+    for i in range(rows):
+        entries = [f"<mtd{_entry(i, k, rows, roles, links)}><mn>%s</mn></mtd>" for k in range(columns)]
+        body += f"<mtr>{''.join(entries)}</mtr>"
     return f'<mtable class="s3-matrix">{body}</mtable>'
+
+
+def _entry(i: int, k: int, rows: int, roles: tuple[str, ...], links: Links) -> str:
+    """Attributes of a matrix's entry."""
+    role = roles[k] if k < len(roles) else ""
+    link = links[i][k] if links else ""
+    end = " s3-foot" if role and i == rows - 1 else ""
+    return (f' class="s3-{role}{end}"' if role else "") + (f' data-link="{escape(link)}"' if link else "")
 
 
 def row(values: Sequence[float], digits: int = 3) -> str:
@@ -79,11 +97,14 @@ class Formula:
     name: str
     value: str
     unit: str = ""
+    link: str = ""
+    """What it is highlighted with."""
 
     def html(self) -> str:
         unit = f"<mtext>{THIN if self.unit != '°' else ''}{escape(self.unit)}</mtext>" if self.unit else ""
         left = f"{self.name}<mo>=</mo>" if self.name else ""
-        return f'<div class="s3-formula"><span>{escape(self.note)}</span>{math(left, self.value, unit)}</div>'
+        link = f' data-link="{escape(self.link)}"' if self.link else ""
+        return f'<div class="s3-formula"{link}><span>{escape(self.note)}</span>{math(left, self.value, unit)}</div>'
 
 
 @dataclass(frozen=True)
@@ -132,9 +153,31 @@ class Note:
         return f'<p class="s3-note s3-{self.level}">{icon}{escape(self.text)}</p>'
 
 
-Readout = Formula | Table | Note
+@dataclass(frozen=True)
+class Fold:
+    """What follows stands in the fold of that title, closed at first; what stands before any is always seen."""
+
+    title: str
+
+    def html(self) -> str:
+        return f"<h3>{escape(self.title)}</h3>"
+
+
+Readout = Formula | Table | Note | Fold
+
+
+def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:
+    """Read-outs by the titles of their folds; those that are always seen by an empty one."""
+    found: dict[str, list[Readout]] = {"": []}
+    title = ""
+    for each in readouts:
+        if isinstance(each, Fold):
+            title = each.title
+        else:
+            found.setdefault(title, []).append(each)
+    return found
 
 
 def render(readouts: Iterable[Readout]) -> str:
-    """All read-outs of a sim as one piece of HTML."""
-    return '<div class="s3-readouts">' + "".join(r.html() for r in readouts) + "</div>"
+    """Read-outs as one piece of HTML, with the titles of folds as headings."""
+    return "".join([each.html() for each in readouts])

@@ -55,12 +55,12 @@ class Action:
     hint: str
     run: Callable[..., Mapping[str, Any] | Iterator[Step]]
     group: str = ""
-    """Folder in which it stands, closed at first."""
+    """Fold in which it stands, closed at first; of those in none, the first one is what people do first."""
 
 
 @dataclass(frozen=True)
 class Typed(Generic[P, S]):
-    """The same as dragging a node of the scene, by number: three inputs that tell `handle` a place in metres.
+    """The same as dragging a node of the scene, by number: three boxes that tell `handle` a place in metres.
 
     They show the place that `place` finds, and hide where there is none. They are not state: what the handle sets is.
     """
@@ -97,7 +97,7 @@ class Files:
     """
 
     group: str
-    """Folder of the controls in which a file is uploaded."""
+    """Fold of the controls in which a file is uploaded."""
     endings: tuple[str, ...]
     library: Callable[[Path | None, int], Library]
     """Makes a server's library, of the administrator's folder and the largest number of bytes that a file may have."""
@@ -136,10 +136,15 @@ class Sim(Generic[P, S]):
     solve: Callable[..., S]
     """From the parameters to their solution."""
     scene: type[Scene[P, S]]
+    caption: Callable[[P, S], str]
+    """In one sentence: what to do now, or what to see."""
     readouts: Callable[[P, S], Iterable[Readout]]
     describe: Callable[[P, S], str]
+    """In one sentence, for people who can't see the scene: what is there."""
     view: View
     actions: Sequence[Action] = ()
+    folds: Sequence[str] = ()
+    """Titles of the folds that read-outs stand in, in the order of the page; groups of controls alone come after."""
     view_of: Callable[[P], View] | None = None
     """The first view of a state, where it isn't always `view`."""
     panes: Callable[[P, S], Sequence[Pane]] | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
@@ -28,6 +30,61 @@ def plain(value: float) -> str:
 def number_text(text: str) -> str:
     """A number's text with the minus sign that programs write, where it has the one that books and we do (U+2212)."""
     return text.replace("−", "-")
+
+
+NUMBER = r"(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[+-]?\d+)?"
+TYPED = re.compile(
+    rf"(?P<sign>[+-]?)(?P<times>{NUMBER})?[*·]?(?P<pi>pi|π)?(?:/(?P<by>{NUMBER}))?(?P<unit>°|deg|rad|mm|cm|m|km|px|%)?",
+    re.IGNORECASE | re.ASCII,
+)
+IN_METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "km": 1000.0}
+
+
+def typed(text: str, unit: str = "") -> float:
+    """The number that a person means who types into a box of that unit. Raises ValueError.
+
+    47.5, 45,5, −0.6, 1e2, 3/4, π/3 (which in a box of degrees is 60), 90°, 1.2 rad, 30 cm.
+    """
+    found = TYPED.fullmatch(re.sub(r"\s", "", number_text(text)))
+    if found is None or not (found["times"] or found["pi"]):
+        raise ValueError(text)
+    value = _decimal(found["times"] or "1") * (math.pi if found["pi"] else 1.0)
+    value = -value if found["sign"] == "-" else value
+    if found["by"]:
+        value /= _decimal(found["by"]) or math.nan
+    given = (found["unit"] or ("rad" if found["pi"] and unit == "°" else unit)).lower()
+    if unit == "°" and given in ("°", "deg", "rad"):
+        value = math.degrees(value) if given == "rad" else value
+        value = round(value, 12)
+    elif unit in IN_METRES and given in IN_METRES:
+        value = round(value * IN_METRES[given] / IN_METRES[unit], 12)
+    elif given != unit.lower():
+        raise ValueError(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value + 0.0
+
+
+def typed_row(text: str) -> list[str]:
+    """The texts of several numbers that were typed or pasted together, with blanks, commas, semicolons or brackets."""
+    inside = text.strip().strip("()[]{}").strip()
+    for separator in (r"\s*;\s*", r"\s*,\s+|\s+", r"\s*,\s*"):
+        if len(parts := [part for part in re.split(separator, inside) if part]) > 1:
+            return parts
+    return [inside]
+
+
+def _decimal(text: str) -> float:
+    return float(text.replace(",", "."))
+
+
+def shown_number(value: float) -> str:
+    """A number as a box shows it: exact up to six digits, with a true minus sign."""
+    text = f"{value + 0.0:.6g}"
+    if "e" in text:
+        mantissa, _, power = text.partition("e")
+        text = f"{mantissa}e{int(power)}"
+    return text.replace("-", "−")
 
 
 def spans(ranges: Iterable[tuple[float, float]]) -> str:

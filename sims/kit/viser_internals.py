@@ -8,8 +8,6 @@ Why each is needed:
 - viser's buffer of what waits for a client costs half of an update; each client gets an `Outbox` in its place.
 - viser's pose setters skip a change that `np.allclose` calls equal (relative 1e-5), so what is drawn could lag
   behind what is shown, and they cost 40 µs each. `set_pose` compares exactly and costs a tenth.
-- What a control is set to in the page goes straight to its session (`received`), not through viser's tasks.
-- Assigning a control's value calls its own callbacks again; `set_value` doesn't.
 - Every handle works out the type hints of its properties anew, which is half the cost of opening a sim;
   here each kind of handle does so once.
 - Assigning any other property resolves type hints each time (30 µs for an array); `set_property` doesn't.
@@ -168,40 +166,14 @@ def set_visible(node: viser.SceneNodeHandle, visible: bool) -> None:
         _put(impl, "visible", "SetSceneNodeVisibilityMessage", {"visible": visible})
 
 
-def set_value(control: Any, value: Any) -> None:
-    """Show a value in a control without calling its callbacks."""
-    if control._impl.value != value:
-        control._impl.value = value
-        _put_gui(control._impl, "value", value)
-
-
-def received(control: Any, value: Any) -> bool:
-    """Take what a page says that a control is set to; False if this control can't be set to it."""
-    old = control._impl.value
-    if not _alike(old, value):
-        return False
-    control._impl.value = tuple(map(float, value)) if isinstance(old, tuple) else type(old)(value)
-    return True
-
-
-def _alike(old: Any, new: Any) -> bool:
-    if isinstance(old, tuple):
-        return isinstance(new, list) and len(new) == len(old) and all(map(_alike, old, new))
-    if isinstance(old, (bool, str)):
-        return type(new) is type(old)
-    return isinstance(new, (int, float)) and not isinstance(new, bool)
-
-
 def set_property(handle: Any, name: str, value: Any) -> None:
-    """Assign a property of a node or control. The value must have the type that goes over the wire.
+    """Assign a property of a node. The value must have the type that goes over the wire.
 
     An array must not be changed afterwards: it is sent later.
     """
     impl = handle._impl
     setattr(impl.props, name, value)
-    if hasattr(impl, "gui_api"):
-        _put_gui(impl, name, value)
-    elif isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray):
         _put(impl, name, "SceneNodeUpdateMessage", {}, (name, value))
     else:
         _put(impl, name, "SceneNodeUpdateMessage", {"updates": {name: value}})
@@ -211,14 +183,3 @@ def _put(impl: Any, what: str, kind: str, fields: dict[str, Any], array: Any = N
     name, api = impl.name, impl.api
     body = {"type": kind, "name": name, "owner": api._owner_id, **fields}
     api._websock_interface.get_message_buffer().put((name, what), Change(("scene", name), body, array))
-
-
-def _put_gui(impl: Any, name: str, value: Any) -> None:
-    body = {"type": "GuiUpdateMessage", "uuid": impl.uuid, "updates": {name: value}}
-    outbox = impl.gui_api._websock_interface.get_message_buffer()
-    outbox.put((impl.uuid, name), Change(("gui", impl.uuid), body))
-
-
-def control_id(control: Any) -> str:
-    """The identifier that a control has in the page."""
-    return str(control._impl.uuid)

@@ -11,8 +11,8 @@ from sims.point_cloud.files import FORMATS
 from sims.point_cloud.library import Library
 from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.panes import panes
-from sims.point_cloud.params import OWN, VIEWS, CloudParams, view_of
-from sims.point_cloud.readouts import describe, preview, readouts
+from sims.point_cloud.params import CHOSEN, OWN, VIEWS, CloudParams, view_of
+from sims.point_cloud.readouts import BOX, ORIGIN, RESULT, caption, describe, preview, readouts
 from sims.point_cloud.scene import CloudScene
 from sims.point_cloud.solution import CloudSolution, ply, solve
 
@@ -32,7 +32,9 @@ SIM = Sim(
     params=CloudParams,
     solve=solve,
     scene=CloudScene,
+    caption=caption,
     readouts=readouts,
+    folds=(RESULT, CHOSEN, BOX, ORIGIN,),
     describe=describe,
     view=VIEWS["room"],
     view_of=view_of,

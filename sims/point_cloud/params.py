@@ -50,6 +50,10 @@ def first_step(process: Any) -> int:
     return 0 if process == "register" else LAST
 
 
+LOOK, CHOSEN = "Show", "The selected point"
+"""Titles of folds."""
+
+
 class CloudParams(Params):
     dataset: Annotated[
         Literal["room", "street", "statue", "two-scans", "file"],
@@ -79,18 +83,18 @@ class CloudParams(Params):
         ),
     ] = "rgb"
     """What the colour of each point says"""
-    point_size: Annotated[float, Slider(0.5, 10.0, step=0.5, title="Point size")] = 2.0
+    point_size: Annotated[float, Slider(0.5, 10.0, step=0.5, title="Point size", group=LOOK)] = 2.0
     """About in pixels, as the sim opens"""
     voxel_size: Annotated[float, Slider(0.0, LONGEST, step=0.005, unit="m", title="Voxel size")] = 0.0
     """Edge of the cells; the points in each become their mean. At 0 all are shown. At most 1 m, but for a file"""
-    show_normals: Annotated[bool, Switch(title="Normals")] = False
+    show_normals: Annotated[bool, Switch(title="Normals", group=LOOK)] = False
     """Short arrows along some normals"""
-    neighbors: Annotated[int, Slider(5, 50, step=1, title="Neighbours k")] = 16
+    neighbors: Annotated[int, Slider(5, 50, step=1, title="Neighbours k", group=LOOK)] = 16
     """How many nearest points, itself included, a normal and an outlier are judged by"""
-    show_box: Annotated[bool, Switch(title="Bounding box")] = True
+    show_box: Annotated[bool, Switch(title="Bounding box", group=LOOK)] = True
     """The box along the axes that all points are in"""
-    selected: Annotated[int | None, NumberBox(0, MOST_POINTS - 1, step=1, title="Selected point")] = None
-    """Click a point, or type its number; −1 for none"""
+    selected: Annotated[int | None, NumberBox(0, MOST_POINTS - 1, step=1, title="Selected point", group=CHOSEN)] = None
+    """Click a point, or type its number; empty for none"""
     process: Annotated[
         Literal["none", "ground", "clusters", "outliers", "register", "surface"],
         Choice(

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sims.kit.readout import THIN, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import THIN, Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import IGNORED, ROLES
 from sims.point_cloud.library import NO_FILES, Library
 from sims.point_cloud.offers import guess
-from sims.point_cloud.params import MOST_COLUMNS, OWN, UPLOAD, CloudParams
+from sims.point_cloud.params import CHOSEN, MOST_COLUMNS, OWN, UPLOAD, CloudParams
 from sims.point_cloud.processes import Registered
 from sims.point_cloud.solution import CloudSolution
 
@@ -28,6 +28,22 @@ def count(number: int) -> str:
     return f"{number:,}".replace(",", THIN)
 
 
+BOX, RESULT, ORIGIN = "The box", "What the process found", "Where the points come from"
+
+
+def caption(p: CloudParams, s: CloudSolution) -> str:
+    """What to do, or what to see."""
+    if s.trouble:
+        return "This can’t be shown: see why below."
+    if s.registration is not None:
+        return "Each step pairs every point with its nearest, and moves the second scan to bring the pairs together."
+    if p.process != "none":
+        return f"Step {p.step} of the process: go on with “Next step”, or play it from the start."
+    if p.voxel_size > 0.0:
+        return "The points in each cell have become their mean: see how few keep the shape, and what is lost."
+    return "Thin the cloud with the voxel size, colour it, or click a point to read what is known of it."
+
+
 def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _warnings(p, s)
@@ -37,11 +53,15 @@ def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         else f", {figure(100.0 * s.points_out / s.points_in, 1)}{THIN}%"
     )
     yield Formula("Points shown, of " + count(s.points_in) + share, symbol("n"), f"<mn>{count(s.points_out)}</mn>")
+    yield Fold(CHOSEN)
+    yield from _selected(s)
+    yield Fold(RESULT)
+    yield from _process(p, s)
+    yield Fold(BOX)
     yield Formula("Dimensions of the box along x, y, z", symbol("d"), row(s.dimensions.tolist()), "m")
     yield Formula("Least coordinates", symbol("min"), row(s.minimum.tolist()), "m")
     yield Formula("Greatest coordinates", symbol("max"), row(s.maximum.tolist()), "m")
-    yield from _selected(s)
-    yield from _process(p, s)
+    yield Fold(ORIGIN)
     if p.dataset in SENSORS:
         yield Note(f"Simulated, not measured: {SENSORS[p.dataset]}.")
     else:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from sims.kit.sim import Action, Contract, Objective, Sim
 from sims.quaternion import actions
 from sims.quaternion.panes import VIEW, panes
-from sims.quaternion.params import QuaternionParams
-from sims.quaternion.readouts import describe, readouts
+from sims.quaternion.params import COMPOSED, MATRIX, PATH, SANDWICH, QuaternionParams
+from sims.quaternion.readouts import caption, describe, readouts
 from sims.quaternion.scene import QuaternionScene
 from sims.quaternion.solution import QuaternionSolution, solve
 
@@ -32,14 +32,19 @@ SIM = Sim(
     params=QuaternionParams,
     solve=solve,
     scene=QuaternionScene,
+    caption=caption,
     readouts=readouts,
+    folds=(PATH, COMPOSED, SANDWICH, MATRIX,),
     describe=describe,
     view=VIEW,
     panes=panes,
     actions=(
         Action("apply", "Apply rotation", "Go to the target, which becomes the start of the next turn", actions.apply),
-        Action("compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", actions.compose),
-        Action("undo", "Undo last turn", "Take back the last turn made", actions.undo),
+        Action(
+            "compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", actions.compose,
+            COMPOSED,
+        ),
+        Action("undo", "Undo last turn", "Take back the last turn made", actions.undo, COMPOSED),
         Action("play", "Play interpolation", "Go from start to target, t from 0 to 1", actions.play),
     ),
     handles={"/tip": actions.hold_tip, "/point": actions.hold_point},

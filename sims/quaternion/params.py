@@ -24,6 +24,8 @@ REACH = 2.0
 """Greatest coordinate of p, in metres."""
 MOST_TURNS = 8
 """Turns that the list keeps."""
+PATH, COMPOSED, SANDWICH, MATRIX = "From start to target", "Composing turns", "Turning a point: q p q*", "Other forms"
+"""Titles of folds."""
 TIP = 1.7
 """Metres from the origin to the tip of the axis."""
 PRESETS: dict[str, Triple] = {
@@ -55,11 +57,15 @@ class QuaternionParams(Params):
         ),
     ] = "slerp"
     """How the object goes from start to target"""
-    long_way: Annotated[bool, Switch(title="Take the long way (−q)")] = False
+    long_way: Annotated[bool, Switch(title="Take the long way (−q)", group=PATH)] = False
     """Go to −q instead of q: the same target by the other way round. Not for Euler angles"""
-    show_euler: Annotated[bool, Switch(title="Euler angles")] = False
+    show_euler: Annotated[bool, Switch(title="Euler angles", group=MATRIX)] = False
     """Show the yaw, pitch and roll that make the same orientation"""
-    point: Annotated[Triple, Vector(-REACH, REACH, step=0.01, unit="m", title="Point p")] = (1.0, 0.0, 0.0)
+    point: Annotated[Triple, Vector(-REACH, REACH, step=0.01, unit="m", title="Point p", group=SANDWICH)] = (
+        1.0,
+        0.0,
+        0.0,
+    )
     """A point that q turns: q p q* gives its image p′. You can also drag it"""
     show_paths: Annotated[bool, Switch(title="Paths of the nose", group="Show")] = True
     """Where the nose goes on the unit sphere, with marks at equal times"""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
-from sims.quaternion.params import QuaternionParams
+from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.quaternion.params import COMPOSED, MATRIX, PATH, SANDWICH, QuaternionParams
 from sims.quaternion.scene import NAMES, euler_in_words
 from sims.quaternion.solution import QuaternionSolution
 
@@ -19,22 +19,38 @@ STAR = "<msup><mi>q</mi><mo>*</mo></msup>"
 TIMES = "<mo>⊗</mo>"
 
 
+def caption(p: QuaternionParams, s: QuaternionSolution) -> str:
+    """What to do, or what to see."""
+    if p.angle == 0.0:
+        return "Turn the angle up and watch w fall: a quaternion holds half of the angle."
+    if p.long_way:
+        return "q and −q end in one orientation, but the way to −q leads the other way round."
+    if p.turns:
+        return "The start is what the turns before made. Another order of the same turns may end elsewhere."
+    return "Move the angle, or drag the axis’s tip n: w is cos θ/2, and x, y, z are the axis times sin θ/2."
+
+
 def readouts(p: QuaternionParams, s: QuaternionSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     if abs(s.length - 1.0) > UNIT:
         given = ", ".join(figure(v, 2) for v in p.axis)
         yield Note(f"Your axis ({given}) has length {figure(s.length, 2)}. Its direction n has length 1.")
-    yield Formula("Axis", symbol("n"), row(s.n.tolist()))
-    yield Formula("Quaternion (cos θ/2, sin θ/2 · n) as (w, x, y, z)", Q, row(s.q.tolist()))
+    yield Formula("Quaternion (cos θ/2, sin θ/2 · n) as (w, x, y, z)", Q, row(s.q.tolist()), link="angle")
     yield Formula("Turns the same", MINUS_Q, row((-s.q).tolist()))
+    yield Formula("Axis, at length one", symbol("n"), row(s.n.tolist()), link="axis")
     yield from _status(p, s)
+    yield Fold(PATH)
+    yield from _way(p, s)
+    yield Fold(COMPOSED)
     yield from _total(p, s)
-    yield Formula("Rotation matrix of the target, for q s and −q s alike", symbol("R"), mathml(s.R_total))
+    yield Fold(SANDWICH)
+    yield from _sandwich(s)
+    yield Fold(MATRIX)
+    words = "Rotation matrix of the target, for q s and −q s alike"
+    yield Formula(words, symbol("R"), mathml(s.R_total, roles=("x", "y", "z")))
     if p.show_euler:
         locked = " Gimbal lock: only one combination of yaw and roll matters." if s.euler_locked else ""
         yield Note(f"Euler angles of the target (ZYX): {euler_in_words(s)}.{locked}", "near" if locked else "info")
-    yield from _way(p, s)
-    yield from _sandwich(s)
 
 
 def _status(p: QuaternionParams, s: QuaternionSolution) -> Iterator[Readout]:

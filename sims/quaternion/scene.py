@@ -71,7 +71,8 @@ class Axis:
 
     def __init__(self, stage: Stage) -> None:
         self.frame = stage.group("/axis")
-        stage.arrow("/axis/arrow", "held", (0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.03), radius=0.018)
+        arrow = stage.arrow("/axis/arrow", "held", (0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.03), radius=0.018)
+        stage.linked("axis", arrow)
         stage.lines("/axis/back", "held", [(0.0, 0.0, 0.0), (0.0, 0.0, -TIP)], width=1.5, dash=(0.06, 0.05))
         self.turn = stage.group("/axis/turn")
         self.turn.pose(position=(0.0, 0.0, HEIGHT))
@@ -79,6 +80,7 @@ class Axis:
         stage.lines("/axis/turn/begin", "ghost", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
         self.end = stage.lines("/axis/turn/end", "held", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
         stage.mesh("/axis/turn/end/head", ARROWHEAD, "held")
+        stage.linked("angle", self.line, self.end)
         self.label = stage.label("/axis/turn/label", "")
         self.tip = stage.grip("/tip", 0.05)
         stage.label("/tip/label", "n", (0.0, 0.0, 0.17))
@@ -124,6 +126,8 @@ class Path:
         stage.group(path)
         self.thick = stage.lines(f"{path}/chosen", "ink", width=3.5)
         self.thin = stage.lines(f"{path}/ghost", "ghost", width=1.5)
+        stage.linked("interpolation", self.thick)
+        stage.linked("t", self.thick)
         self.label = stage.label(f"{path}/label", NAMES[name])
 
     def draw(self, way: NosePath, chosen: Name) -> None:
@@ -145,6 +149,7 @@ class Point:
         self.image = stage.ball("/image", 0.055, "ink")
         self.image_name = stage.label("/image/label", "p′", (0.0, 0.0, -0.16))
         self.track = stage.lines("/axis/track", "held", width=1.8, dash=(0.03, 0.04))
+        stage.linked("point", self.track)
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
         turning = s.track.radius > 0.01 and p.angle > 0.0

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from sims.kit.sim import Contract, Objective, Sim, Typed, View
 from sims.transform_chain import actions
-from sims.transform_chain.params import ChainParams
-from sims.transform_chain.readouts import describe, readouts
+from sims.transform_chain.params import POINT, ChainParams
+from sims.transform_chain.readouts import FREEDOM, INVERSE, STAGES, caption, describe, readouts
 from sims.transform_chain.scene import ChainScene
 from sims.transform_chain.solution import ChainSolution, solve
 
@@ -27,7 +27,9 @@ SIM = Sim(
     params=ChainParams,
     solve=solve,
     scene=ChainScene,
+    caption=caption,
     readouts=readouts,
+    folds=(STAGES, INVERSE, POINT, FREEDOM,),
     describe=describe,
     view=View((3.05, -3.0, 1.8), (1.0, 0.35, -0.25), 1.65),
     actions=actions.ACTIONS,

@@ -145,9 +145,9 @@ def new_target(p: ChainParams) -> dict[str, Any]:
 
 
 ACTIONS: tuple[Action, ...] = (
+    Action("sweep", "Sweep joint", "A full turn of the joint whose trace is shown, or of the first", sweep),
     Action("add-link", "Add link", "One link more at the end, about y; the others stay as they are", add_link),
     Action("remove-link", "Remove link", "Takes the last link away; the others stay as they are", remove_link),
-    Action("sweep", "Sweep joint", "A full turn of the joint whose trace is shown, or of the first", sweep),
     Action("new-target", "New target", "A place within reach, to reach by hand", new_target),
     *(Action(each.name, each.label, each.says, preset(each), "Presets") for each in PRESETS),
 )

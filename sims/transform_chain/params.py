@@ -17,6 +17,10 @@ LISTS = ("angles", "lengths", "axes")
 FAR, FARTHEST = (-20.0, -20.0, -20.0), (20.0, 20.0, 20.0)
 
 
+POINT = "A point on the end effector"
+"""Title of a fold."""
+
+
 class ChainParams(Params):
     """State of the sim."""
 
@@ -51,13 +55,15 @@ class ChainParams(Params):
         ),
     ] = "individual"
     """Arrows and matrices: from each frame to the next, or from the world to each frame"""
-    swap: Annotated[int | None, OptionalNumber(1, MOST - 1, title="Swap transforms", words="{0} ↔ {1}")] = None
+    swap: Annotated[
+        int | None, OptionalNumber(1, MOST - 1, title="Swap transforms", words="{0} ↔ {1}", group="The arm")
+    ] = None
     """Compare with the arm whose two neighbouring transforms are multiplied in the other order"""
-    trace: Annotated[int | None, OptionalNumber(1, MOST, title="Trace of joint", words="Joint {0}")] = None
+    trace: Annotated[
+        int | None, OptionalNumber(1, MOST, title="Trace of joint", words="Joint {0}", group="The arm")
+    ] = None
     """The circle that the end effector describes as this joint turns; follows the joint that you move"""
-    point: Annotated[
-        Place, Vector(-1, 1, step=0.01, unit="m", title="Point p", group="A point on the end effector")
-    ] = (0.1, 0.2, 0.0)
+    point: Annotated[Place, Vector(-1, 1, step=0.01, unit="m", title="Point p", group=POINT)] = (0.1, 0.2, 0.0)
     """Coordinates in the end effector's frame of the point that is taken through the chain"""
     target: Annotated[Place | None, Vector(FAR, FARTHEST, step=0.01, unit="m", title="Target", hidden=True)] = None
     """A place to reach with the end effector; absent is none"""

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 from sims.transform_chain.actions import known
-from sims.transform_chain.params import MOST, ChainParams
+from sims.transform_chain.params import MOST, POINT, ChainParams
 from sims.transform_chain.solution import ENOUGH, ChainSolution
 
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+AXES = ("x", "y", "z")
 
 
 def sub(number: int) -> str:
@@ -22,18 +25,29 @@ def transform_name(show: str, i: int) -> str:
     return f"T{sub(i - 1 if show == 'individual' else 0)}{sub(i)}"
 
 
+STAGES, FREEDOM, INVERSE = "The transforms, one by one", "Freedom to move", "The inverse"
+
+
+def caption(p: ChainParams, s: ChainSolution) -> str:
+    """What to do, or what to see."""
+    if s.swapped is not None:
+        return "The ghost is the same arm with two transforms exchanged: see where the order matters."
+    if p.target is not None and s.target_distance is not None and s.target_distance > ENOUGH:
+        return "Bring the end effector to the target, joint by joint, or by dragging its ring."
+    if s.singular:
+        return "A singular pose: there is a direction in which no joint can move the end effector."
+    return "Turn one joint: everything after it moves as one piece, and only its own transform changes."
+
+
 def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(p, s)
     n = p.count
     product = "".join(f"T{sub(i)}{sub(i + 1)}" for i in range(n))
-    yield Formula(f"World from end effector: {product}", symbol("T", f"0{n}"), mathml(s.end_effector))
-    yield Formula("End effector from world: its inverse (Rᵀ, −Rᵀt)", symbol("T", f"{n}0"), mathml(s.inverse))
+    yield Formula(f"World from end effector: {product}", symbol("T", f"0{n}"), mathml(s.end_effector, roles=AXES))
     if s.swapped is not None:
         yield from _swapped(p, s)
-    yield _through(s)
-    yield from _kept(s)
-    yield from _freedom(s)
+    yield Fold(STAGES)
     words = "From each frame to the next" if p.show == "individual" else "From the world to each frame"
     yield Note(f"{words}:")
     for i, T in enumerate(s.individual if p.show == "individual" else s.composed, start=1):
@@ -42,7 +56,15 @@ def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
         )
         if p.show == "composed":
             what = "".join(f"T{sub(k)}{sub(k + 1)}" for k in range(i))
-        yield Formula(what, symbol("T", f"{i - 1 if p.show == 'individual' else 0}{i}"), mathml(T))
+        name = symbol("T", f"{i - 1 if p.show == 'individual' else 0}{i}")
+        yield Formula(what, name, mathml(T, roles=AXES), link=f"angles.{i - 1} lengths.{i - 1} axes.{i - 1}")
+    yield Fold(INVERSE)
+    yield Formula("End effector from world: its inverse (Rᵀ, −Rᵀt)", symbol("T", f"{n}0"), mathml(s.inverse))
+    yield Fold(POINT)
+    yield _through(s)
+    yield from _kept(s)
+    yield Fold(FREEDOM)
+    yield from _freedom(s)
 
 
 def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:

@@ -36,7 +36,9 @@ class ChainScene:
         self.end = End(stage)
         self.grip = stage.grip("/grip", 0.032, halo=2.4)
         self.arrows = stage.arrows("/transforms", "ink", radius=0.013)
+        stage.linked("show", self.arrows)
         self.circle = stage.lines("/trace", "held", width=2.5, dash=(0.06, 0.05))
+        stage.linked("trace", self.circle)
         self.status = Status(stage)
         self.target = Target(stage)
         self.ghost: Ghost | None = None
@@ -89,6 +91,7 @@ class End:
         self.letters = [stage.label(f"/end_effector/letter_{a}", a) for a in "xyz"]
         self.point = stage.ball("/end_effector/point", 0.028, "ink")
         self.arm = stage.lines("/end_effector/arm", "ink", width=1.5, dash=(0.03, 0.03))
+        stage.linked("point", self.arm)
         self.letter = stage.label("/end_effector/letter_p", "p")
 
     def draw(self, p: ChainParams, s: ChainSolution) -> None:

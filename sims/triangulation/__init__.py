@@ -9,8 +9,8 @@ from __future__ import annotations
 from sims.kit.sim import Action, Contract, Objective, Sim, Typed, View
 from sims.triangulation import actions
 from sims.triangulation.panes import panes
-from sims.triangulation.params import FARTHEST, NEAREST, TriangulationParams
-from sims.triangulation.readouts import describe, readouts
+from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, SURENESS, TriangulationParams
+from sims.triangulation.readouts import METHODS, caption, describe, readouts
 from sims.triangulation.scene import TriangulationScene
 from sims.triangulation.solution import TriangulationSolution, solve
 
@@ -29,7 +29,9 @@ SIM = Sim(
     params=TriangulationParams,
     solve=solve,
     scene=TriangulationScene,
+    caption=caption,
     readouts=readouts,
+    folds=(IMAGES, METHODS, SURENESS,),
     describe=describe,
     view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
     panes=panes,

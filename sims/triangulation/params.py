@@ -17,6 +17,10 @@ NEAREST, FARTHEST = (-60.0, 0.0, -50.0), (60.0, 100.0, 50.0)
 LAST_SEED = 9999
 
 
+IMAGES, SURENESS = "Image points", "How sure it is"
+"""Titles of folds."""
+
+
 class TriangulationParams(Params):
     """State of the sim."""
 
@@ -24,13 +28,18 @@ class TriangulationParams(Params):
     """Distance between the cameras"""
     focal: Annotated[float, Slider(200, 1500, step=10, unit="px", symbol="f", title="Focal length")] = 600
     """The same for both cameras"""
-    left_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v")] = (410.0, 210.0)
+    left_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Left point u, v", group=IMAGES)] = (
+        410.0,
+        210.0,
+    )
     """Where the point is in the left picture, before noise"""
-    right_uv: Annotated[Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v")] = (320.0, 210.0)
+    right_uv: Annotated[
+        Pixel, Vector((0.0, 0.0), LAST, step=0.1, unit="px", title="Right point u, v", group=IMAGES)
+    ] = (320.0, 210.0)
     """Where the point is in the right picture, before noise"""
     noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise")] = 0
     """Standard deviation of Gaussian noise on both points; 0 is off"""
-    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample")] = 0
+    seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample", group=SURENESS)] = 0
     """Seed of the noise: the same seed, the same noise"""
     method: Annotated[
         Method,
@@ -39,5 +48,5 @@ class TriangulationParams(Params):
         ),
     ] = "dlt"
     """Which reconstruction is the result"""
-    show_ellipsoid: Annotated[bool, Switch(title="Show ellipsoid")] = True
+    show_ellipsoid: Annotated[bool, Switch(title="Show ellipsoid", group=SURENESS)] = True
     """The uncertainty of the result, three standard deviations wide"""

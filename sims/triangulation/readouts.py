@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
-from sims.triangulation.params import NAMES, TriangulationParams
+from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.triangulation.params import IMAGES, NAMES, SURENESS, TriangulationParams
 from sims.triangulation.solution import SAMPLES, TriangulationSolution
 
 VERY_FAR = 1e4
@@ -18,20 +18,38 @@ TROUBLE = {
 }
 
 
+METHODS = "The three methods"
+
+
+def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """What to do, or what to see."""
+    if s.point is None:
+        return "The rays don’t meet in front of the cameras: pull the right point to the left in its picture."
+    if p.noise > 0.0:
+        return "With noise on both pixels the rays miss each other: the ellipsoid says where the point may be."
+    return "Drag a point in one picture: its ray turns, and the place where both rays meet moves in depth."
+
+
 def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(p, s)
+    if s.depth_from_disparity is not None:
+        words = f"Depth from a disparity of {quantity(s.disparity, 'px', 2)}"
+        yield Formula(
+            words, f"{symbol('Z')}<mo>=</mo>{FB_OVER_D}", mathml(s.depth_from_disparity), "m", link="baseline focal"
+        )
     if s.point is not None and s.point[1] < VERY_FAR:
         yield Formula(f"Point by the {NAMES[p.method]} method", symbol("X"), row(s.point.tolist()), "m")
-    yield _methods(p, s)
+    if s.depth_sigma is not None and not s.vague:
+        yield _depth_sigma(s)
+    yield Fold(IMAGES)
     yield _images(p, s)
     yield Formula("Disparity: left u minus right u", symbol("d"), mathml(s.disparity, 2), "px")
-    if s.depth_from_disparity is not None:
-        yield Formula(
-            "Depth from disparity", f"{symbol('Z')}<mo>=</mo>{FB_OVER_D}", mathml(s.depth_from_disparity), "m"
-        )
+    yield Fold(METHODS)
+    yield _methods(p, s)
     yield Formula("Gap between the rays", symbol("g"), mathml(100.0 * s.ray_gap, 2), "cm")
     yield Formula("Angle between the rays (parallax)", symbol("α"), mathml(s.parallax_angle, 2), "°")
+    yield Fold(SURENESS)
     yield from _uncertainty(p, s)
     if p.noise > 0.0:
         yield _noise(p, s)
@@ -90,10 +108,14 @@ def _length(metres: float) -> str:
 def _uncertainty(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
     if s.covariance is None or s.ellipsoid_axes is None or s.depth_sigma is None or s.vague:
         return
-    assumed = f"for {quantity(s.sigma_px, 'px', 2)} of noise"
-    yield Formula(f"Standard deviation of the depth, {assumed}", symbol("σ", "Z"), mathml(s.depth_sigma), "m")
+    yield _depth_sigma(s)
     yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
     yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
+
+
+def _depth_sigma(s: TriangulationSolution) -> Formula:
+    words = f"Standard deviation of the depth, for {quantity(s.sigma_px, 'px', 2)} of noise"
+    return Formula(words, symbol("σ", "Z"), mathml(s.depth_sigma), "m")
 
 
 def _noise(p: TriangulationParams, s: TriangulationSolution) -> Note:

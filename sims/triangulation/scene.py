@@ -33,6 +33,7 @@ class TriangulationScene:
         stage.ground(size=16.0, cell=0.5)
         self.cameras = [CameraInScene(stage, "left", "L"), CameraInScene(stage, "right", "R")]
         self.baseline = stage.lines("/baseline", "ink", width=2.0)
+        stage.linked("baseline", self.baseline)
         self.baseline_label = stage.label("/baseline/label", "", (0.0, -0.1, 0.45))
         self.points = {name: Shape(stage, f"/{name}", name) for name in METHODS}
         self.label = stage.group("/result")
@@ -115,6 +116,8 @@ class CameraInScene:
         stage.lines(f"{path}/post", "ghost", [(0.0, 0.08, -0.12), (0.0, 1.0, -0.12)], width=1.2)
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
         self.ray = stage.lines(f"{path}/ray", name, width=1.8)
+        stage.linked("focal", self.figure.edges)
+        stage.linked(f"{name}_uv", self.ray)
         self.back = stage.lines(f"{path}/back", name, width=1.5, dash=(0.08, 0.08))
         self.highlighted = stage.lines(f"{path}/lit", name, width=6.0)
         self.highlighted.show(False)

@@ -1,18 +1,10 @@
 // Runs before the page is first painted: says what the page is like, keeps a still picture until the scene is live,
 // and starts the rest. A frame in a hidden tab or a closed <details> has no size: all begins when it gets one.
 (() => {
-  const { layout, ...data } = JSON.parse(document.getElementById("sim3").textContent);
+  const data = JSON.parse(document.getElementById("sim3").textContent);
   const root = document.documentElement;
 
-  // What the styles depend on, at every size. The panels' own widths stay as they were when the page began.
-  const lay = () => {
-    root.toggleAttribute("data-phone", innerWidth <= layout.phone);
-    root.toggleAttribute("data-tight", innerWidth < layout.narrow || innerHeight < layout.flat);
-  };
-
   const boot = () => {
-    lay();
-    addEventListener("resize", lay);
     const given = new URLSearchParams(location.search);
     const bytes = crypto.getRandomValues(new Uint8Array(8));
     const theme = given.get("theme");
@@ -22,19 +14,12 @@
     const path = (reloaded && history.state?.path) || data.path;
     const place = new URL(path, location.href).href; // location.origin is "null" in a sandboxed frame
 
-    const phone = innerWidth <= layout.phone;
-    const narrow = innerWidth < layout.narrow;
-    const right = phone || given.get("controls") === "0" ? 0 : narrow ? layout.narrow_panel : layout.panel;
-    const left = data.panes && !narrow ? layout.pictures : 0;
-    root.style.setProperty("--s3-right", `${right}px`);
-    root.style.setProperty("--s3-left", `${left}px`);
     root.style.setProperty("--s3-still", `url(${data.still[dark ? "dark" : "light"]})`);
     root.style.colorScheme = dark ? "dark" : "light";
-    root.dataset.controls = given.get("controls") ?? "1";
     root.dataset.theme = dark ? "dark" : "light";
 
     window.sim3 = {
-      ...data, layout, dark, place, path, covered: { left, right, phone },
+      ...data, dark, place, path,
       viewer: Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join(""),
       socket: place.replace(/^http/, "ws"), search: location.search, opened: history.state?.opened ?? location.search,
     };

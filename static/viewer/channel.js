@@ -18,9 +18,7 @@ export class Channel {
     this.socket = new WebSocket(`${sim.socket}channel?viewer=${sim.viewer}`);
     this.socket.onopen = () => {
       this.retryAfter = FIRST;
-      this.send({
-        type: "hello", dark: sim.dark, reduced: reduced.matches, width: innerWidth, height: innerHeight, ...this.greeting(),
-      });
+      this.send({ type: "hello", dark: sim.dark, reduced: reduced.matches, ...this.greeting() });
     };
     this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
     this.socket.onclose = (event) => {

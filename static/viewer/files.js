@@ -20,7 +20,6 @@ export class Files {
     });
   }
 
-  // viser makes the bar and the words anew with its panel.
   show() {
     const bar = document.querySelector(".s3-upload progress");
     const words = document.querySelector("[data-s3-file-status]");

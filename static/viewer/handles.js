@@ -1,20 +1,16 @@
-// Handles in image panes, dragged by pointer, finger or keys. Pictures are replaced at each update, so everything
+// Handles in image panes, dragged by pointer, finger or keys. Pictures may be drawn anew at any time, so everything
 // listens at the document.
 import { sim } from "./page.js";
 
-const INTERVAL = 40; // milliseconds between two places that are sent
 const AGAIN = 400; // milliseconds within which a key goes on from where the last one led
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Handles {
-  constructor(channel, highlight, focus) {
-    this.channel = channel;
+  constructor(pace, highlight) {
+    this.pace = pace;
     this.highlight = highlight;
-    this.focus = focus;
     this.held = null;
     this.keyed = null;
-    this.sentAt = 0;
-    this.waiting = 0;
     document.addEventListener("pointerdown", (event) => this.grab(event), true);
     document.addEventListener("pointermove", (event) => this.drag(event), true);
     for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, (event) => this.letGo(event), true);
@@ -28,12 +24,7 @@ export class Handles {
     const box = pictured(pane).viewBox.baseVal;
     const x = Math.round(within(at.x, 0, box.width - 1) * 100) / 100;
     const y = Math.round(within(at.y, 0, box.height - 1) * 100) / 100;
-    const due = this.sentAt + INTERVAL - performance.now();
-    clearTimeout(this.waiting);
-    this.waiting = setTimeout(() => {
-      this.sentAt = performance.now();
-      this.channel.send({ type: "handle", name, x, y });
-    }, Math.max(due, 0));
+    this.pace.put(`handle ${name}`, { type: "handle", name, x, y });
     return { x, y };
   }
 
@@ -84,8 +75,16 @@ export class Handles {
 
   pick(ground, at) {
     if (sim.watching) return;
-    this.focus.want(ground.dataset.pick);
+    this.wanted = ground.dataset.pick; // the handle takes the focus when it is there
     this.moveTo(ground.dataset.pick, at, ground.closest("svg").dataset.pane);
+  }
+
+  // A picture was drawn: the handle that was put into it gets the focus.
+  drawn() {
+    const handle = this.wanted && document.querySelector(`[data-handle="${CSS.escape(this.wanted)}"]`);
+    if (!handle) return;
+    this.wanted = null;
+    handle.focus({ preventScroll: true });
   }
 
   key(event) {

@@ -1,6 +1,5 @@
 // How high the frame would best be: for course pages, and for Canvas and H5P, if they answer in their own words.
-import { embedded, sim } from "./page.js";
-import { contentEnds } from "./viser_dom.js";
+import { column, embedded, sim } from "./page.js";
 
 const REST = 400;
 
@@ -44,6 +43,7 @@ export class Height {
 
 // As high as the controls and read-outs need beside the scene, or below it on a phone, within reason.
 function wanted() {
-  const [least, most] = innerWidth <= sim.layout.phone ? [640, 900] : [480, 900];
-  return Math.round(Math.min(Math.max(least, ...contentEnds()), most));
+  const beside = column.offsetLeft > 0;
+  const needs = (beside ? 0 : column.offsetTop) + column.scrollHeight;
+  return Math.round(Math.min(Math.max(beside ? 480 : 640, needs), 900));
 }

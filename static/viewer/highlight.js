@@ -1,8 +1,11 @@
-// What stands for the same thing in pictures and tables is highlighted together; a click selects it.
+// What stands for the same thing in controls, pictures, formulas and tables is highlighted together, in the scene too; a
+// click on a point or its row selects it.
 import { sim } from "./page.js";
 
+const SELECTS = ".s3-point, tr:has(button), [data-handle]";
+
 export function linked(name) {
-  return `[data-link="${CSS.escape(name)}"]`;
+  return `[data-link~="${CSS.escape(name)}"]`;
 }
 
 export class Highlight {
@@ -12,21 +15,22 @@ export class Highlight {
     this.theirs = ""; // what somebody else in the room hovers over
   }
 
-  // `held()` says that a handle is dragged: it stays highlighted, wherever the pointer is. Focus that is given back to a
-  // table drawn anew (`focus.returning`) is on nothing new.
-  listen(held, focus) {
+  // `held()` says that a handle is dragged: it stays highlighted, wherever the pointer is.
+  listen(held) {
     document.addEventListener("pointerover", (event) => held() || this.hover(event.target));
-    document.addEventListener("focusin", (event) => focus.returning || this.hover(event.target));
+    document.addEventListener("focusin", (event) => this.hover(event.target));
     // A finger has left when it is lifted; what it touched stays highlighted until it touches something else.
     document.documentElement.addEventListener("pointerleave", (event) => event.pointerType === "touch" || this.hover(null));
     document.addEventListener("click", (event) => {
       const node = event.target.closest?.("[data-link]");
-      if (node) this.select(node.dataset.link);
+      if (node?.matches(SELECTS)) this.select(node.dataset.link);
     });
   }
 
+  // A control that has the focus stays highlighted while the pointer is on nothing.
   hover(node) {
-    const name = node?.closest?.("[data-link]")?.dataset.link ?? "";
+    const at = node?.closest?.("[data-link]") ?? document.activeElement?.closest?.("[data-link]");
+    const name = at?.dataset.link.split(" ")[0] ?? "";
     if (name === this.mine) return;
     this.mine = name;
     this.show();

@@ -38,7 +38,7 @@ export class Host {
       this.channel.send({ type: "set", params, ...(seconds === undefined ? {} : { seconds }) });
     }
     if (!page) return;
-    if (isView(wanted)) view.choose(wanted);
+    if (isView(wanted)) view.go(wanted);
     else if (wanted !== undefined) this.refuse("view", wanted, "six numbers: viewpoint x, y, z and look-at x, y, z");
     this.setPage(theme, controls);
   }

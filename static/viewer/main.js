@@ -1,114 +1,114 @@
-// The companion of viser's client: makes its parts and tells them of what comes.
+// The page of a sim: makes its parts and tells them of what comes.
 import { Address } from "./address.js";
 import { Channel } from "./channel.js";
+import { Controls } from "./controls.js";
 import { Files } from "./files.js";
-import { Focus } from "./focus.js";
 import { Handles } from "./handles.js";
 import { Height } from "./height.js";
 import { Highlight } from "./highlight.js";
 import { Host } from "./host.js";
+import { Pace } from "./pace.js";
 import { sim } from "./page.js";
+import { Parts } from "./parts.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
-import { View, firstView } from "./view.js";
-import { dismissSoftwareNotice, isFolder, markSliders, nameControls, prepare, start } from "./viser_dom.js";
+import { View } from "./view.js";
+import { drawnVersion, hasWebGL, prepare, start } from "./viser_dom.js";
 import { Words } from "./words.js";
 import { Work } from "./work.js";
 
-const address = new Address();
-prepare(firstView(address));
-start();
+const LOOKING = 30; // milliseconds between two looks at whether the scene is there
 
-class Companion {
+class Page {
   constructor() {
+    this.address = new Address();
     this.channel = new Channel(() => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why));
     this.words = new Words();
     this.trouble = new Trouble();
     this.work = new Work(() => this.channel.send({ type: "cancel" }));
-    this.focus = new Focus();
+    this.pace = new Pace(this.channel);
     this.highlight = new Highlight(this.channel);
-    this.handles = new Handles(this.channel, this.highlight, this.focus);
+    this.controls = new Controls(this.channel, this.pace);
+    this.handles = new Handles(this.pace, this.highlight);
+    this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight);
     this.files = new Files(this.words);
-    this.toolbar = new Toolbar(address, this.words, this.files);
-    this.host = new Host(this.channel, address);
+    this.host = new Host(this.channel, this.address);
     this.height = new Height(this.host);
-    this.view = new View(this.channel, address, () => this.height.tellSoon());
+    this.view = new View(this.channel, this.address, () => this.height.tellSoon());
+    this.toolbar = new Toolbar(this.address, this.words, this.files, this.view);
     this.state = null;
-    this.tidying = false;
+    this.does = {
+      state: (message) => this.takeState(message),
+      show: (message) => this.takeParts(message),
+      home: (message) => this.view.moved(message),
+      point: ({ name }) => this.highlight.others(name),
+      error: (message) => this.fail(message),
+      work: (message) => this.work.show(message),
+    };
   }
 
   begin() {
-    this.highlight.listen(() => this.handles.held !== null, this.focus);
+    this.highlight.listen(() => this.handles.held !== null);
     this.host.listen(this.view, this.height);
-    document.addEventListener("keydown", openFolder, true);
-    new MutationObserver(() => this.changed()).observe(document.body, { childList: true, subtree: true });
     this.trouble.lost();
-    address.show();
+    this.address.show();
     this.channel.open();
+    if (hasWebGL()) {
+      prepare(this.view.first, (view) => this.view.looked(view));
+      start();
+    } else {
+      this.trouble.blind();
+      this.sceneless = true;
+    }
+    this.looking = setInterval(() => this.goLive(), LOOKING);
   }
 
   greeting() {
-    return { controls: address.options.get("controls") !== "0", query: address.query, opened: address.opened };
+    return { query: this.address.query, opened: this.address.opened };
   }
 
   lost(code, reason) {
     this.trouble.lost(code, reason);
+    this.pace.answered();
     this.work.show({ text: "" });
   }
 
   take(message) {
-    if (message.type === "state") {
-      this.trouble.found();
-      this.state = message;
-      address.query = message.query;
-      address.show();
-      this.words.speak(message.text);
-      this.goLive();
-      this.host.state(message);
-    } else if (message.type === "point") {
-      this.highlight.others(message.name);
-    } else if (message.type === "error") {
-      this.words.notify("⚠ " + message.message);
-      this.host.post({ type: "sim3:error", message: message.message, errors: message.errors });
-    } else if (message.type === "work") {
-      this.work.show(message);
-    }
+    this.does[message.type](message);
   }
 
-  // viser draws its panel anew whenever something in it changes.
-  changed() {
+  takeState(message) {
+    this.trouble.found();
+    this.state = message;
+    this.address.query = message.query;
+    this.address.show();
+    this.words.speak(message.text, this.view.words);
+    this.host.state(message);
+  }
+
+  takeParts(message) {
+    this.parts.show(message);
     this.height.tellSoon();
-    this.focus.keep();
-    this.highlight.show();
-    this.goLive();
-    if (this.tidying) return;
-    this.tidying = true;
-    requestAnimationFrame(() => {
-      this.tidying = false;
-      nameControls();
-      markSliders();
-      this.files.show();
-      dismissSoftwareNotice();
-    });
+  }
+
+  fail({ message, errors, control }) {
+    if (!control || !this.controls.refuse(control, message)) this.words.notify("⚠ " + message);
+    this.host.post({ type: "sim3:error", message, errors });
   }
 
   // The still picture stays until the scene is live.
   goLive() {
-    if (sim.live || !this.state || !document.querySelector("canvas") || !document.querySelector("[data-s3-drawn]")) return;
+    if (!this.state || this.parts.version < 0 || (!this.sceneless && drawnVersion() === undefined)) return;
+    clearInterval(this.looking);
     sim.live = true;
-    address.show();
-    // The controls are there; the scene is on the screen with the frame after next.
+    sim.liveAt = performance.now();
+    this.address.show();
+    // The scene is on the screen with the frame after next.
     requestAnimationFrame(() => requestAnimationFrame(() => document.querySelector(".s3-still").remove()));
-    this.words.describe(this.state.text);
+    this.words.describe(this.state.text, this.view.words);
     this.host.post({ type: "sim3:ready" });
     this.height.begin();
   }
 }
 
-function openFolder(event) {
-  if ((event.key !== "Enter" && event.key !== " ") || !isFolder(event.target)) return;
-  event.preventDefault();
-  event.target.click();
-}
-
-new Companion().begin();
+new Page().begin();

@@ -3,6 +3,8 @@ export const sim = window.sim3;
 export const Query = URLSearchParams;
 export const embedded = window.parent !== window;
 export const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+export const column = document.querySelector(".s3-column");
+export const scene = document.querySelector(".s3-scene");
 
 export function element(tag, attributes = {}, parent = document.body) {
   const node = document.createElement(tag);

@@ -1,9 +1,9 @@
 // The buttons that every sim has: share, save the picture, keys, downloads.
-import { element, sim } from "./page.js";
+import { column, element, sim } from "./page.js";
 import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
-  constructor(address, words, files) {
+  constructor(address, words, files, view) {
     this.address = address;
     this.words = words;
     const does = {
@@ -11,12 +11,18 @@ export class Toolbar {
       picture: savePicture,
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
+      enlarge: (button) => enlarge(button.closest("figure")),
+      home: () => view.goHome(),
       "give-up": () => files.giveUp(),
       close: (button) => button.closest("dialog").close(),
     };
-    document.addEventListener("click", (event) => does[event.target.closest?.("[data-s3]")?.dataset.s3]?.(event.target));
+    document.addEventListener("click", (event) => {
+      does[event.target.closest?.("[data-s3]")?.dataset.s3]?.(event.target);
+      if (event.target.closest?.("[data-act]")?.dataset.act === "reset") view.reset();
+    });
     document.addEventListener("keydown", (event) => {
-      if (event.key === "?" && !/^(INPUT|TEXTAREA)$/.test(event.target.tagName)) showKeys();
+      if (event.key === "?" && !(event.target.tagName === "INPUT" && event.target.type === "text")) showKeys();
+      if (event.key === "Escape") document.querySelector(".s3-full")?.classList.remove("s3-full");
     }, true);
   }
 
@@ -26,7 +32,7 @@ export class Toolbar {
       // Frames of other sites may not; asking all the same would leave an error in the console.
       if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
       await navigator.clipboard.writeText(link);
-      this.words.notify("Link copied. It opens this sim in exactly this state.");
+      this.words.notify("Link copied. It opens this sim in exactly this state and view.");
     } catch {
       dialog("Link to this state", '<p><input class="s3-link" readonly aria-label="Link" value=""></p>');
       const field = document.querySelector(".s3-link");
@@ -34,6 +40,14 @@ export class Toolbar {
       field.select();
     }
   }
+}
+
+// A picture covers the scene, or goes back to its place; it stays live.
+function enlarge(figure) {
+  const large = !figure.classList.contains("s3-full");
+  document.querySelector(".s3-full")?.classList.remove("s3-full");
+  figure.classList.toggle("s3-full", large);
+  document.documentElement.style.setProperty("--s3-left", `${column.offsetLeft || innerWidth}px`);
 }
 
 function savePicture() {
@@ -57,7 +71,10 @@ function dialog(title, html) {
 function showKeys() {
   dialog("Keys", `<table>
     <tr><th scope="row"><kbd>Tab</kbd></th><td>next control or point</td></tr>
-    <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> on a slider</th><td>one step</td></tr>
+    <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> on a slider</th><td>one step; ten with <kbd>Shift</kbd>, or <kbd>Page Up</kbd> and <kbd>Page Down</kbd>; <kbd>Home</kbd> and <kbd>End</kbd> go to its ends</td></tr>
+    <tr><th scope="row">double click on a slider</th><td>back to what it was at first</td></tr>
+    <tr><th scope="row">in a number box</th><td>47.5, 45,5, −0.6, 1e2, π/3, 90° and 30 cm are understood; <kbd>Enter</kbd> takes it, <kbd>Esc</kbd> gives it up, <kbd>↑</kbd> <kbd>↓</kbd> go one step</td></tr>
+    <tr><th scope="row"><kbd>←</kbd> <kbd>→</kbd> <kbd>↑</kbd> <kbd>↓</kbd> on the scene</th><td>turn the view; <kbd>+</kbd> <kbd>−</kbd> zoom, <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> move, <kbd>1</kbd> <kbd>2</kbd> <kbd>3</kbd> front, side, top, <kbd>Home</kbd> back</td></tr>
     <tr><th scope="row">arrow keys on a point in a picture</th><td>one pixel; with <kbd>Shift</kbd> ten, with <kbd>Alt</kbd> a tenth</td></tr>
     <tr><th scope="row">click, or <kbd>Enter</kbd>, on a picture</th><td>choose a pixel, where the sim has something to say of it</td></tr>
     <tr><th scope="row">drag in the scene</th><td>turn the view; right button moves it, wheel zooms</td></tr>

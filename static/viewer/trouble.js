@@ -1,5 +1,5 @@
 // No connection: after a while in words, for whoever runs the server.
-import { element, sim } from "./page.js";
+import { element, scene, sim } from "./page.js";
 
 const PATIENCE = 5000;
 const REFUSED = 4403; // the server says what is wrong with what it saw
@@ -17,21 +17,38 @@ export class Trouble {
     else this.missing ||= setTimeout(() => this.show(), PATIENCE);
   }
 
+  // The browser draws no 3D; the rest works.
+  blind() {
+    const box = element("section", { class: "s3-trouble s3-blind", role: "alert" }, scene);
+    element("h2", {}, box).textContent = "This browser can’t draw 3D";
+    element("p", {}, box).textContent = "WebGL 2 is off, or the machine has none. Numbers, pictures and controls work.";
+    offer(box);
+  }
+
   found() {
     this.known = true;
     clearTimeout(this.missing);
     this.missing = 0;
     this.why = "";
-    document.querySelector(".s3-trouble")?.remove();
+    document.querySelector(".s3-trouble:not(.s3-blind)")?.remove();
   }
 
   show() {
-    const box = document.querySelector(".s3-trouble") ?? element("section", { class: "s3-trouble", role: "alert" });
+    const box = document.querySelector(".s3-trouble:not(.s3-blind)") ?? element("section", { class: "s3-trouble", role: "alert" });
     const words = this.known ? interrupted(this.why) : unreachable(this.why);
     if (box.textContent === words.map(([, text]) => text).join("")) return;
     box.replaceChildren();
     for (const [tag, text] of words) if (text) element(tag, {}, box).textContent = text;
+    offer(box);
   }
+}
+
+// The same sim without websockets and without a scene.
+function offer(box) {
+  const line = element("p", {}, box);
+  const link = element("a", { href: `${sim.text}${location.search}` }, line);
+  link.textContent = "The numbers and pictures without the scene";
+  line.append(" work all the same.");
 }
 
 function interrupted(why) {

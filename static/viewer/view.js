@@ -1,20 +1,21 @@
-// The viewpoint: worked out anew when the page's size has left it, but never against one that somebody chose.
-import { sim } from "./page.js";
+// From where the scene is looked at: the sim's own view, fitted to the page's size, until somebody chooses another. By
+// pointer and finger viser does the turning; buttons and keys are done here.
+import { embedded, scene, sim } from "./page.js";
+import { sceneCanvas } from "./viser_dom.js";
 
 const REST = 150; // milliseconds without another size
+const KEPT = 400; // milliseconds between two addresses: Safari allows a hundred in 30 s
+const SEEN = 2500; // milliseconds for which a hint stands there
+const KEYS = { 1: "front", 2: "side", 3: "top", "+": "in", "=": "in", "-": "out", Home: "home" };
+const FROM = { front: [0, -1, 0], side: [1, 0, 0], top: [0, -1e-3, 1] };
 
 // A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits. The
 // server does the same for the views that it finds later (sims/kit/scene/view.py).
 export function fit() {
-  const { field, sheet, lower } = sim.layout;
-  const { left, right, phone } = sim.covered;
-  const seen = phone ? sheet : 1; // of the height; viser's bottom sheet covers the rest
   const target = sim.view.slice(3);
   const away = sim.view.slice(0, 3).map((v, i) => v - target[i]);
-  const width = Math.max(innerWidth - left - right, 1);
-  const half = Math.tan(field / 2) * Math.min(1, width / (innerHeight * seen)) * seen;
+  const half = Math.tan(sim.field / 2) * Math.min(1, Math.max(scene.clientWidth, 1) / Math.max(scene.clientHeight, 1));
   const scale = sim.radius / Math.sin(Math.atan(half)) / Math.hypot(...away);
-  if (phone) target[2] -= lower * sim.radius; // so that the scene stands above the sheet
   return [...away.map((v, i) => target[i] + v * scale), ...target];
 }
 
@@ -22,14 +23,16 @@ export class View {
   constructor(channel, address, resized) {
     this.channel = channel;
     this.address = address;
-    this.chosen = address.options.has("view");
-    this.last = fit();
-    this.sizing = 0;
-    for (const kind of ["pointerdown", "wheel", "keydown"]) {
-      document.addEventListener(kind, (event) => {
-        if (event.target.matches?.("canvas")) this.chosen = true;
-      }, { capture: true, passive: true });
-    }
+    this.linked = read(address.options.get("view"));
+    this.chosen = this.linked !== null;
+    this.home = fit();
+    this.camera = this.linked ?? this.home;
+    this.sizing = this.keeping = this.hinting = 0;
+    this.hint = scene.querySelector(".s3-hint");
+    scene.addEventListener("click", (event) => this.look(event.target.closest?.("[data-look]")?.dataset.look));
+    scene.addEventListener("pointerdown", (event) => this.press(event), { capture: true, passive: true });
+    scene.addEventListener("keydown", (event) => this.key(event));
+    if (embedded) this.share();
     addEventListener("resize", () => {
       clearTimeout(this.sizing);
       this.sizing = setTimeout(() => {
@@ -40,21 +43,123 @@ export class View {
     });
   }
 
-  refit() {
-    const view = fit();
-    if (this.chosen || Math.hypot(...view.map((v, i) => v - this.last[i])) < 0.02 * sim.radius) return;
-    this.last = view;
-    this.channel.send({ type: "view", view, fit: true });
+  // The first one: that of the link, or the one that fits.
+  get first() {
+    return this.linked ?? this.home;
   }
 
-  choose(view) {
-    this.chosen = true;
-    this.address.options.set("view", view.join(","));
+  // ---- the page around it scrolls past a frame until somebody means the scene
+
+  share() {
+    scene.dataset.shared = "";
+    scene.addEventListener("wheel", (event) => {
+      if (!("shared" in scene.dataset) || event.ctrlKey || !event.target.matches("canvas")) return;
+      event.stopPropagation();
+      this.say("Click the scene, or hold Ctrl, to zoom with the wheel");
+    }, { capture: true, passive: true });
+    scene.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && (scene.dataset.shared = ""));
+    document.addEventListener("pointerdown", (event) => scene.contains(event.target) || (scene.dataset.shared = ""));
+    scene.addEventListener("pointercancel", () => this.say("Tap the scene to turn it; two fingers zoom"));
+  }
+
+  say(words) {
+    this.hint.textContent = words;
+    this.hint.hidden = false;
+    clearTimeout(this.hinting);
+    this.hinting = setTimeout(() => (this.hint.hidden = true), SEEN);
+  }
+
+  press(event) {
+    if (!event.target.matches?.("canvas")) return;
+    if (event.pointerType !== "touch") delete scene.dataset.shared;
+    else addEventListener("pointerup", () => delete scene.dataset.shared, { once: true });
+    sceneCanvas()?.focus({ preventScroll: true });
+  }
+
+  key(event) {
+    if (event.target !== sceneCanvas() || event.ctrlKey || event.metaKey || event.altKey || !KEYS[event.key]) return;
+    event.preventDefault();
+    this.look(KEYS[event.key]);
+  }
+
+  // ---- where from
+
+  look(how) {
+    if (!how) return;
+    if (how === "home") {
+      this.goHome();
+      return;
+    }
+    const target = this.camera.slice(3);
+    const away = this.camera.slice(0, 3).map((v, i) => v - target[i]);
+    const far = Math.hypot(...away);
+    const to = FROM[how]?.map((v) => v * far) ?? away.map((v) => v * (how === "in" ? 1 / 1.25 : 1.25));
+    this.go([...to.map((v, i) => target[i] + v), ...target]);
+  }
+
+  go(view) {
+    this.camera = view;
     this.channel.send({ type: "view", view });
+    this.keep();
+  }
+
+  goHome() {
+    this.home = fit();
+    this.go(this.home);
+  }
+
+  // Back to where the link that was opened looked from.
+  reset() {
+    if (this.linked) this.go(this.linked);
+    else this.goHome();
+  }
+
+  // viser's camera has moved, by hand or because it was told to.
+  looked(view) {
+    this.camera = view;
+    this.keep();
+  }
+
+  // The scene has found another view of its own.
+  moved({ view, radius }) {
+    sim.view = view;
+    sim.radius = radius;
+    this.home = this.camera = fit();
+    this.keep();
+  }
+
+  get athome() {
+    return Math.hypot(...this.camera.map((v, i) => v - this.home[i])) < 0.01 * sim.radius;
+  }
+
+  keep() {
+    this.chosen = !this.athome;
+    this.keeping ||= setTimeout(() => {
+      this.keeping = 0;
+      if (this.athome) this.address.options.delete("view");
+      else this.address.options.set("view", this.camera.map((v) => Number(v.toFixed(3))).join(","));
+      this.address.show();
+    }, KEPT);
+  }
+
+  refit() {
+    const before = this.home;
+    const moved = this.chosen;
+    this.home = fit();
+    if (moved || Math.hypot(...this.home.map((v, i) => v - before[i])) < 0.02 * sim.radius) return;
+    this.go(this.home);
+  }
+
+  // In words, from which side the scene is seen.
+  get words() {
+    const [x, y, z] = this.camera.slice(0, 3).map((v, i) => v - this.camera[i + 3]);
+    const far = Math.hypot(x, y, z);
+    const sides = [[-y, "in front", "behind"], [x, "the right", "the left"], [z, "above", "below"]];
+    const said = sides.filter(([v]) => Math.abs(v) > 0.2 * far).map(([v, plus, minus]) => (v > 0 ? plus : minus));
+    return `Seen from ${said.join(", ")}.`;
   }
 }
 
-// The first one: that of the link, or the one that fits.
-export function firstView(address) {
-  return address.options.get("view")?.replaceAll("−", "-").split(",").map(Number) ?? fit();
+function read(text) {
+  return text?.replaceAll("−", "-").split(",").map(Number) ?? null;
 }

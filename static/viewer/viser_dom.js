@@ -1,22 +1,21 @@
-// All that knows viser's client from inside: what it is told where it looks for it, and the markup of its panel. Tests
+// All that knows viser's client from inside: what it is told where it looks for it, and what it lets pages see. Tests
 // compare what stands here with the client of the installed version.
-import { Query, element, sim } from "./page.js";
+import { Query, scene, sim } from "./page.js";
 
 const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
-const SOFTWARE = "Software WebGL";
-const SCROLLS = ".mantine-ScrollArea-viewport, [data-dock-region]";
-const FOLDER = ".mantine-Paper-root > :is(.tabler-icon-chevron-down, .tabler-icon-chevron-up)";
-const TRACK = ".mantine-Slider-trackContainer, .mantine-Slider-track";
+const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
+const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
+let viewer = null; // viser's own state, once it is there
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
-export function prepare(view) {
+export function prepare(view, looked) {
   const search = new Query({
     websocket: `${sim.socket}?viewer=${sim.viewer}`,
     initialCameraPosition: view.slice(0, 3).join(","),
     initialCameraLookAt: view.slice(3).join(","),
-    initialCameraFov: `${sim.layout.field}`,
+    initialCameraFov: `${sim.field}`,
     ...(sim.dark ? { darkMode: "1" } : {}),
   });
   window.URLSearchParams = class extends Query {
@@ -30,12 +29,65 @@ export function prepare(view) {
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
   // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
   document.hasFocus = () => document.visibilityState === "visible";
-  // Else phones widen the page for a menu that stands out at its side for a moment, the menu grows with it, and so on.
-  document.querySelector("meta[name=viewport]").content += ", minimum-scale=1";
+  keepKeys();
+  adopt(looked);
 }
 
 export function start() {
   document.body.append(Object.assign(document.createElement("script"), { src: sim.client, crossOrigin: "anonymous" }));
+}
+
+// viser's client turns the view by keys wherever the focus is; here only while the scene has it.
+function keepKeys() {
+  const listen = document.addEventListener.bind(document);
+  document.addEventListener = (kind, take, options) =>
+    listen(kind, kind === "keydown" && !options ? (event) => document.activeElement === sceneCanvas() && take(event) : take, options);
+}
+
+// viser publishes its state for its own tests, when the canvas is there.
+function adopt(looked) {
+  Object.defineProperty(window, "__viserMutable", {
+    configurable: true,
+    get: () => viewer,
+    set: (mutable) => {
+      viewer = mutable;
+      drawLess(mutable);
+      watchCamera(mutable, looked);
+    },
+  });
+}
+
+// viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. Two frames show
+// a change, and one more, when nothing has changed for a while, what comes late.
+function drawLess(mutable) {
+  const whole = mutable.requestRender;
+  let late = 0;
+  const frames = (count) => mutable.scene.__r3f.root.getState().invalidate(count);
+  const draw = () => {
+    if (!sim.liveAt || performance.now() < sim.liveAt + LOADING) {
+      whole();
+      return;
+    }
+    frames(2);
+    clearTimeout(late);
+    late = setTimeout(() => frames(1), SETTLED);
+  };
+  Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
+}
+
+// What viser tells the server of its camera tells us from where the scene is looked at.
+function watchCamera(mutable, looked) {
+  let send = mutable.sendMessage;
+  const watched = (message) => {
+    if (message.type === "ViewerCameraMessage") looked([...message.position, ...message.look_at]);
+    send(message);
+  };
+  Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
+}
+
+// Which version of the state the scene shows; undefined before it shows any.
+export function drawnVersion() {
+  return viewer?.nodePoseData["/version"]?.position[0];
 }
 
 // viser writes labels in black on white in any theme. In the dark one their shaders are told its colours.
@@ -64,82 +116,24 @@ function avoidModuleWorkers() {
 // viser makes a new canvas when it connects anew, and leaves the old one for a while: the scene is what is seen.
 export function sceneCanvas() {
   const area = (canvas) => canvas.clientWidth * canvas.clientHeight;
-  return [...document.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
+  return [...scene.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
 }
 
+// The scene can have the focus; people who don't see it hear what is there.
 export function describeScene(words) {
   const canvas = sceneCanvas();
   if (!canvas) return;
-  for (const old of document.querySelectorAll("canvas[role]")) {
+  for (const old of scene.querySelectorAll("canvas[role]")) {
     if (old === canvas) continue;
-    old.removeAttribute("role");
-    old.removeAttribute("aria-label");
+    for (const name of ["role", "aria-label", "tabindex"]) old.removeAttribute(name);
   }
-  canvas.setAttribute("role", "img");
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "application");
+  canvas.setAttribute("aria-roledescription", "3D scene");
   canvas.setAttribute("aria-label", words);
 }
 
-export function nameControls() {
-  for (const label of document.querySelectorAll("label[for]")) {
-    const row = label.closest(".mantine-Flex-root");
-    if (!row || row.querySelectorAll("label[for]").length > 1) continue;
-    const slider = row.querySelector("[role=slider]");
-    const boxes = row.querySelectorAll("input:not([type=hidden])");
-    slider?.setAttribute("aria-label", label.textContent);
-    boxes.forEach((box, k) => {
-      const which = boxes.length > 1 ? `, ${k + 1} of ${boxes.length}` : "";
-      box.setAttribute("aria-label", label.textContent + which);
-      if (sim.watching) box.disabled = true; // viser leaves the number box of a disabled slider open
-    });
-  }
-  for (const button of document.querySelectorAll("button.mantine-ActionIcon-root:not([aria-label])")) {
-    button.setAttribute("aria-label", "Settings of the viewer");
-  }
-  // viser's folders open to a pointer alone.
-  for (const icon of document.querySelectorAll(FOLDER)) {
-    const head = icon.parentElement;
-    head.tabIndex = 0;
-    head.setAttribute("role", "button");
-    head.setAttribute("aria-expanded", icon.classList.contains("tabler-icon-chevron-up"));
-  }
-  document.getElementById("root").setAttribute("role", "main");
+export function hasWebGL() {
+  return Boolean(document.createElement("canvas").getContext("webgl2"));
 }
 
-export function isFolder(node) {
-  return Boolean(node.matches?.("[aria-expanded].mantine-Paper-root"));
-}
-
-export function markSliders() {
-  const data = document.querySelector("[data-s3-regions]");
-  if (!data) return;
-  for (const [label, spans] of Object.entries(JSON.parse(data.dataset.s3Regions))) {
-    for (const node of document.querySelectorAll("label[for]")) {
-      const track = node.textContent === label && document.getElementById(node.htmlFor)?.querySelector(TRACK);
-      if (track) mark(track, spans);
-    }
-  }
-}
-
-function mark(track, spans) {
-  const wanted = spans.map(([from, to]) => `${from},${to}`).join(";");
-  if (track.dataset.regions === wanted) return;
-  track.dataset.regions = wanted;
-  track.querySelectorAll(".s3-region").forEach((old) => old.remove());
-  for (const [from, to] of spans) {
-    const region = element("span", { class: "s3-region", title: "near gimbal lock" }, track);
-    region.style.left = `${100 * from}%`;
-    region.style.width = `${100 * (to - from)}%`;
-  }
-}
-
-// viser's hint about software rendering would stand over the scene on every school machine without a GPU.
-export function dismissSoftwareNotice() {
-  for (const note of document.querySelectorAll(".mantine-Notification-root")) {
-    if (note.textContent.includes(SOFTWARE)) note.querySelector("button")?.click();
-  }
-}
-
-// How far down the contents of viser's panels would reach, if nothing were scrolled away.
-export function contentEnds() {
-  return [...document.querySelectorAll(SCROLLS)].map((node) => node.getBoundingClientRect().top + node.scrollHeight);
-}

@@ -1,4 +1,4 @@
-// The page's words: its heading, what is spoken of a change, and notices for a moment.
+// The page's words: what is spoken of a change, and notices for a moment.
 import { element, sim } from "./page.js";
 import { describeScene } from "./viser_dom.js";
 
@@ -7,21 +7,20 @@ const SEEN = 6000;
 
 export class Words {
   constructor() {
-    element("h1", {}, element("header", { class: "s3-hidden" })).textContent = sim.title;
     this.live = element("div", { "aria-live": "polite", role: "status", class: "s3-hidden" });
     this.notice = element("div", { role: "alert", class: "s3-notice", hidden: "" });
     this.speaking = 0;
     this.hiding = 0;
   }
 
-  speak(text) {
+  speak(text, seen) {
     clearTimeout(this.speaking);
     this.speaking = setTimeout(() => (this.live.textContent = text), REST);
-    this.describe(text);
+    this.describe(text, seen);
   }
 
-  describe(text) {
-    describeScene(`${sim.title}, 3D scene. ${text}`);
+  describe(text, seen) {
+    describeScene(`${sim.title}. ${text} ${seen} Arrow keys turn the view, plus and minus zoom, Home goes back.`);
   }
 
   notify(text) {

@@ -1,9 +1,9 @@
 // What takes the server long: in words, how much of it is done, and a way back to what is shown.
-import { element, sim } from "./page.js";
+import { element, scene, sim } from "./page.js";
 
 export class Work {
   constructor(cancel) {
-    this.box = element("div", { class: "s3-work", role: "group", "aria-label": "Work in progress", hidden: "" });
+    this.box = element("div", { class: "s3-work", role: "group", "aria-label": "Work in progress", hidden: "" }, scene);
     this.words = element("span", { role: "status" }, this.box);
     this.bar = element("progress", { max: "1", "aria-label": "Progress" }, this.box);
     this.button = element("button", { type: "button" }, this.box);

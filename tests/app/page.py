@@ -17,6 +17,7 @@ from websockets.typing import Origin, Subprotocol
 
 from app.rooms.keys import new_key, room_of
 from sims.kit.viser_internals import PROTOCOL
+from tests.column import ColumnModel
 from tests.frames import SceneModel, encode_message
 from tests.server import PATIENCE, camera_message
 
@@ -49,7 +50,7 @@ def closed(socket: ClientConnection) -> int:
 
 
 class Page:
-    """viser's client and our companion in one: with a key it controls the room, without it watches."""
+    """viser's client and the column beside it in one: with a key it controls the room, without it watches."""
 
     def __init__(
         self,
@@ -66,14 +67,15 @@ class Page:
         self.address = f"{url}/sims/{slug}/s/{self.room}/" + (f"{self.key}/" if self.key else "")
         self.name = secrets.token_hex(8)
         self.model = SceneModel()
+        self.column = ColumnModel()
         self.told: list[dict[str, Any]] = []
         self._counter = itertools.count(1)
         self.channel = connect(f"{self.address}channel?viewer={self.name}", viser=False)
-        greeting = {"dark": False, "reduced": True, "width": 1280, "controls": True, "query": query}
+        greeting = {"dark": False, "reduced": True, "query": query}
         self.tell({"type": "hello", **greeting, **(hello or {})})
         self.viser = connect(f"{self.address}?viewer={self.name}", viser=True)
         self.send(camera_message())
-        self.until(lambda: any(e.kind == "GuiHtmlMessage" for e in self.model.gui.values()), "the panel")
+        self.until(lambda: self.column.parts and self.model.version >= 0, "the scene and the column")
         self.until(lambda: self.states, "the state")
 
     def tell(self, message: Mapping[str, Any]) -> None:
@@ -84,10 +86,13 @@ class Page:
         """Send a message as viser's client."""
         self.viser.send(encode_message(message))
 
-    def move(self, label: str, value: Any) -> None:
-        """Set a control of the panel."""
-        uuid = self.model.control(label).uuid
-        self.send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}})
+    def slide(self, name: str, value: Any) -> None:
+        """Move a slider."""
+        self.tell({"type": "slide", "name": name, "value": value})
+
+    def enter(self, name: str, text: Any) -> None:
+        """Type into a box, or choose."""
+        self.tell({"type": "enter", "name": name, "text": text})
 
     @property
     def states(self) -> list[dict[str, Any]]:
@@ -111,7 +116,7 @@ class Page:
         while not happened():
             assert time.monotonic() < end, f"waited {PATIENCE:g} s in vain for {what}"
             self._receive(self.viser, self.model.feed)
-            self._receive(self.channel, lambda text: self.told.append(json.loads(text)))
+            self._receive(self.channel, self._hear)
 
     def settle(self) -> None:
         """Wait until the server has answered what was sent so far, and drawn it."""
@@ -122,9 +127,15 @@ class Page:
     def works(self) -> None:
         """Check that this page is still served: a control moves the state and the scene."""
         value = float(next(self._counter) % 90)
-        self.move("Yaw", value)
+        self.slide("yaw", value)
         self.until(lambda: self.params["yaw"] == value, "the state to follow the slider")
-        self.until(lambda: f"Rz({value:.0f}°)" in self.model.html(), "the read-outs to follow")
+        self.until(lambda: f"Rz({value:.0f}°)" in self.column.html("read"), "the read-outs to follow")
+        self.until(lambda: self.model.version == self.column.version, "the scene to follow")
+
+    def _hear(self, text: Any) -> None:
+        message = json.loads(text)
+        self.told.append(message)
+        self.column.take(message)
 
     @staticmethod
     def _receive(socket: ClientConnection, take: Callable[[Any], object]) -> None:

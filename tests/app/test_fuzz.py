@@ -31,7 +31,7 @@ GROWTH = 40.0
 """Megabytes that the server may have grown by, after a first round."""
 TEXT, BINARY, CLOSE, PING = 1, 2, 8, 9
 LIGHT = [sim for sim in SIMS if not sim.heavy]
-HELLO = {"type": "hello", "dark": False, "reduced": False, "width": 900, "controls": True, "query": ""}
+HELLO = {"type": "hello", "dark": False, "reduced": False, "query": ""}
 
 
 class Neighbour(threading.Thread):
@@ -153,6 +153,8 @@ class Stranger:
                 {"type": "set", "params": self._params(sim), "seconds": self._number()},
                 {"type": "handle", "name": name, "x": self._number(), "y": self._number()},
                 {"type": "action", "name": name},
+                {"type": "slide", "name": self._input(sim), "value": self._number()},
+                {"type": "enter", "name": self._input(sim), "text": self._text()},
                 {"type": "point", "name": name},
                 {"type": "select", "name": name},
                 {"type": "get", "solution": self.chance.random() < 0.5},
@@ -161,6 +163,29 @@ class Stranger:
                 {"type": "sudo"},
             ]
         )
+
+    def _input(self, sim: Sim[Any, Any]) -> str:
+        names = [*sim.params.model_fields, *(typed.handle for typed in sim.typed), "\udfff", "/"]
+        ends = ["", "", ".0", ".1", ".7", ".x", ":preset", ".-1"]
+        return f"{self.chance.choice(names)}{self.chance.choice(ends)}"
+
+    def _text(self) -> str:
+        words = [
+            "",
+            "x",
+            "1,2,3",
+            "(1; 2; 3)",
+            "π/0",
+            "-π/3",
+            "9" * 300,
+            "1e999",
+            "30 cm",
+            "\u0663",
+            "--1",
+            "zyx",
+            "\ud800",
+        ]
+        return self.chance.choice([f"{self._number()}", f"{self._number()}°", *words])
 
     def _params(self, sim: Sim[Any, Any]) -> dict[str, Any]:
         names = [*sim.params.model_fields, "__class__", "\udfff"]
@@ -185,11 +210,10 @@ class Stranger:
             "start_screen_pos": (0.5, 0.5), "end_position": place[::-1], "end_screen_pos": (0.5, 0.5),
             "button": "left", "modifier": None, "owner": "",
         }  # fmt: skip
-        update = {"type": "GuiUpdateMessage", "uuid": name, "updates": {"value": self._value()}}
         camera = {**camera_message(), "fov": self._number(), "position": place, "up_direction": (0.0, 0.0, 0.0)}
         bad = {**drag, "name": b"\xff", "type": chance.choice(["ShareUrlRequest", "RunJavascriptMessage", 5, None])}
         with suppress(UnicodeEncodeError, OverflowError):
-            data = _pack(chance.choice([drag, update, camera, bad]))
+            data = _pack(chance.choice([drag, camera, bad]))
             return data if chance.random() < 0.6 else _mutated(chance, data)
         return chance.choice([b"\x91", b"\x81\xa4type", b"\xdd\xff\xff\xff\xff"]) * chance.choice([1, 2000])
 

@@ -165,36 +165,13 @@ def test_messages_with_wrong_fields_are_dropped(local: Local, visitor: Page, mes
     visitor.works()
 
 
-UPDATES: list[Any] = [
-    {},
-    {"disabled": True},
-    {"visible": False},
-    {"value": 5.0, "label": "<b>"},
-    {"update_cb": []},
-    {"removed": True},
-    {"__class__": "x"},
-    {"value": NAN},
-    {"value": INFINITE},
-    {"value": -1e300},
-    {"value": None},
-    {"value": {"a": 1}},
-    {"value": [1.0] * 33},
-    {"value": [NAN]},
-    {"value": [[1.0]]},
-    {"value": "x" * 401},
-    {"value": b"bytes"},
-    [],
-    "value",
-]
-
-
-@pytest.mark.parametrize("updates", UPDATES, ids=lambda u: str(u)[:30])
-def test_a_control_takes_nothing_but_a_value(local: Local, visitor: Page, updates: Any) -> None:
-    before = local.refusals["message"]
-    visitor.send({"type": "GuiUpdateMessage", "uuid": visitor.model.control("Yaw").uuid, "updates": updates})
-    local.refused("message", before)
+def test_nobody_can_set_anything_of_viser_itself(local: Local, visitor: Page) -> None:
+    """Not even a control's value: viser has no controls here."""
+    for updates in ({"value": 1.0}, {"disabled": True}):
+        before = local.refusals["message"]
+        visitor.send({"type": "GuiUpdateMessage", "uuid": "x", "updates": updates})
+        local.refused("message", before)
     visitor.works()
-    assert not visitor.model.control("Yaw").props["disabled"]
 
 
 # ---- messages that pass and make no sense
@@ -219,25 +196,53 @@ ODD_VALUES = [
 ]
 
 
-@pytest.mark.parametrize("label", ["Yaw", "Order", "Frame", "Animate", "Reset", "Parameters"])
-def test_a_control_survives_values_of_other_kinds(visitor: Page, label: str) -> None:
-    for value in ODD_VALUES:
-        visitor.move(label, value)
+NO_CONTROLS = [
+    "yaw",
+    "order",
+    "frame",
+    "animate",
+    "",
+    "yaw.1",
+    "yaw.x",
+    "order:preset",
+    "/nothing.1",
+    "/.9",
+    "__class__",
+]
+
+
+@pytest.mark.parametrize("name", NO_CONTROLS)
+def test_a_control_survives_values_of_other_kinds(local: Local, visitor: Page, name: str) -> None:
+    before = local.refusals["channel"]
+    for text in [value for value in ODD_VALUES if isinstance(value, str)]:
+        visitor.enter(name, text)
+    visitor.slide(name, 1e9)
+    visitor.enter(name, [1.0])
     visitor.works()
     assert -180.0 <= visitor.params["yaw"] <= 180.0
+    assert local.refusals["channel"] >= before + 1, "values of another kind are counted"
 
 
 @pytest.mark.parametrize(
-    ("label", "value"), [("Yaw", "5"), ("Yaw", True), ("Yaw", [5.0]), ("Order", 5), ("Reset", 1.0), ("Animate", "yes")]
+    ("name", "text"),
+    [
+        ("yaw", "many"),
+        ("yaw", "400"),
+        ("yaw", "nan"),
+        ("yaw", "1e999"),
+        ("yaw", "--5"),
+        ("order", "abc"),
+        ("order", "XYZ"),
+    ],
 )
-def test_a_value_of_another_kind_is_counted(local: Local, visitor: Page, label: str, value: Any) -> None:
-    before = local.refusals["value"]
-    visitor.move(label, value)
-    local.refused("value", before)
+def test_what_cannot_be_meant_is_answered_beside_its_control(visitor: Page, name: str, text: str) -> None:
+    visitor.enter(name, text)
+    answers = [m["control"] for m in visitor.told if "control" in m]
+    visitor.until(lambda: [m["control"] for m in visitor.told if "control" in m] == [*answers, name], "an answer")
+    visitor.works()
 
 
 SENSELESS = {
-    "unknown control": {"type": "GuiUpdateMessage", "uuid": "nothing", "updates": {"value": 1.0}},
     "unknown node": {**DRAG, "name": "/nothing"},
     "node that can't be dragged": DRAG,
     "drag that never began": {**DRAG, "phase": "update"},
@@ -281,9 +286,9 @@ BEFORE_HELLO: list[str | bytes] = [
     '{"type": "get"}',
     '{"type": "set", "params": {"yaw": 1}}',
     '{"type": "hello"}',
-    '{"type": "hello", "dark": 1, "reduced": false, "width": 900, "controls": true, "query": ""}',
-    '{"type": "hello", "dark": false, "reduced": false, "width": NaN, "controls": true, "query": ""}',
-    json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 9, "controls": True, "query": "x" * 4001}),
+    '{"type": "hello", "dark": 1, "reduced": false, "query": ""}',
+    '{"type": "hello", "dark": false, "reduced": NaN, "query": ""}',
+    json.dumps({"type": "hello", "dark": False, "reduced": False, "query": "x" * 4001}),
     "[" * 16_000,
     '{"type": "set", "params": {"a": ' + "[" * 10_000,
     '{"type": "hello", "query": "\\ud800"}',
@@ -390,7 +395,7 @@ def test_bad_values_are_refused_in_words_and_the_state_stays(
 
 
 def test_a_second_greeting_changes_nothing(visitor: Page) -> None:
-    greeting = {"dark": True, "reduced": True, "width": 100, "controls": False, "query": "yaw=99"}
+    greeting = {"dark": True, "reduced": True, "query": "yaw=99"}
     before = visitor.params
     visitor.tell({"type": "hello", **greeting})
     visitor.settle()
@@ -416,8 +421,9 @@ def test_who_only_watches_may_send_nonsense_too(local: Local, learner: Page) -> 
             watcher.viser.send(data)
         local.refused("message", before)
         before = local.refusals["watching"]
-        for label, value in (("Yaw", 5.0), ("Reset", True), ("Order", "XYZ")):
-            watcher.move(label, value)
+        watcher.slide("yaw", 5.0)
+        watcher.enter("order", "xyz")
+        watcher.tell({"type": "action", "name": "reset"})
         watcher.send(DRAG)
         local.refused("watching", before + 3)
         watcher.settle()
@@ -469,7 +475,7 @@ def test_a_huge_body_is_refused_before_it_is_read(local: Local, learner: Page, c
 def test_fast_sliders_are_not_a_flood_and_the_last_value_arrives(local: Local, visitor: Page) -> None:
     before = local.refusals
     for k in range(300):
-        visitor.move("Yaw", k / 2)
+        visitor.slide("yaw", k / 2)
     visitor.until(lambda: visitor.params["yaw"] == 149.5, "the last value")
     assert local.refusals == before
 
@@ -481,7 +487,7 @@ def test_a_page_that_does_not_read_holds_nobody_up(local: Local, learner: Page) 
             socket_.send(encode_message(camera_message()))
         for _ in range(3):
             for k in range(80):
-                teacher.move("Yaw", float(k))
+                teacher.slide("yaw", float(k))
             teacher.works()
         learner.works()
         for socket_ in idle:
@@ -586,10 +592,10 @@ def test_memory_stays_flat_and_the_log_stays_clean() -> None:
         def abuse(rounds: int) -> float:
             for _ in range(rounds):
                 with Page(server.url) as page:
-                    page.move("Yaw", float(chance.randrange(90)))
+                    page.slide("yaw", float(chance.randrange(90)))
                     page.viser.send(chance.randbytes(chance.randrange(1, 5000)))
                     page.tell({"type": "set", "params": {"yaw": "x" * chance.randrange(5000)}})
-                    page.move("Order", 17)
+                    page.enter("order", "17")
                     page.settle()
             learner.works()
             return server.memory()
@@ -602,7 +608,7 @@ def test_memory_stays_flat_and_the_log_stays_clean() -> None:
 def test_a_killed_server_goes_on_where_the_page_was() -> None:
     with Server() as server:
         page = Page(server.url, "yaw=12&order=xyz")
-        page.move("Yaw", 77.0)
+        page.slide("yaw", 77.0)
         page.until(lambda: page.params["yaw"] == 77.0, "the state to follow")
         query = page.states[-1]["query"]
         server.restart(hard=True)

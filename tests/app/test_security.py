@@ -162,9 +162,7 @@ def test_a_full_server_says_so() -> None:
         assert closed(socket) == 1013
         local.refused("full")
         channel = connect(f"{local.url}/sims/{SLUG}/s/{ROOM}/{KEY}/channel", viser=False)
-        channel.send(
-            json.dumps({"type": "hello", "dark": False, "reduced": False, "width": 900, "controls": True, "query": ""})
-        )
+        channel.send(json.dumps({"type": "hello", "dark": False, "reduced": False, "query": ""}))
         assert closed(channel) == 1013
         one.works()
         other.works()
@@ -267,7 +265,7 @@ def test_who_watches_sees_and_changes_nothing(local: Local) -> None:
             watcher.tell(message)
             local.refused("watching", before)
         before = local.refusals["watching"]
-        watcher.move("Yaw", 50.0)
+        watcher.slide("yaw", 50.0)
         local.refused("watching", before)
         teacher.works()
         yaw = teacher.params["yaw"]

@@ -39,7 +39,7 @@ class Eye:
         self.seen: list[tuple[float, float]] = []
         self.broken = broken
 
-    def draw(self, params: Any, solution: Any) -> None:
+    def draw(self, params: Any, solution: Any, version: int) -> None:
         if self.broken:
             raise RuntimeError("a viewer broke")
         self.seen.append((getattr(params, "size", 0.0), getattr(solution, "double", 0.0)))
@@ -169,8 +169,8 @@ def test_what_is_changed_while_drawing_is_drawn_too() -> None:
         room = Room()
 
         class Echo(Eye):
-            def draw(self, params: Any, solution: Any) -> None:
-                super().draw(params, solution)
+            def draw(self, params: Any, solution: Any, version: int) -> None:
+                super().draw(params, solution, version)
                 if params.size < 5:
                     room.session.change({"size": params.size + 1})
 
@@ -576,12 +576,12 @@ def test_what_a_sim_stumbles_over_is_told_and_the_session_goes_on(
             "action": lambda: commands.act("stumble"),
             "motion": lambda: commands.act("stumble at once"),
             "late motion": lambda: commands.act("stumble later"),
-            "change": lambda: commands.change({"size": 77}),
+            "change": lambda: commands.slide("size", 77.0),
         }[what]()
         await room.moved()
         await room.drawn()
         assert len(room.errors) == 1
-        commands.change({"size": 3})
+        commands.slide("size", 3.0)
         await room.drawn()
         assert room.eye.seen[-1] == (3.0, 6.0)
 

@@ -81,6 +81,7 @@ def toy(seconds: float = 0.0, *, heavy: bool = False) -> tuple[Sim[Any, Any], So
         params=ToyParams,
         solve=solver,
         scene=ToyScene,
+        caption=lambda p, s: "Make it grow.",
         readouts=lambda p, s: (),
         describe=lambda p, s: f"Size {p.size:g}, double {s.double:g}.",
         view=View((3.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0),

@@ -27,16 +27,17 @@ from playwright.sync_api import (
 )  # fmt: skip
 
 from sims import by_slug
-from sims.kit.controls import worded
-from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.readout import figure
+from tests.column import ColumnModel
 from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
 
 T = TypeVar("T")
 PATIENCE = 120.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
-OPTIONS = ("view", "controls", "theme")
+OPTIONS = ("view", "controls", "theme", "only")
+THUMB = 16.0
+"""Pixels that a slider's thumb takes of its track."""
 # What viser's client makes the browser say: at each start, at each drag in the scene, and, without a GPU, where there
 # are nodes to click.
 VISERS_OWN_WORDS = (
@@ -46,10 +47,12 @@ VISERS_OWN_WORDS = (
 )
 
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
-FORMULAS = """() => [...document.querySelectorAll(".s3-readouts math")].map(formula => [
+FORMULAS = """() => [...document.querySelectorAll(".s3-column math")].map(formula => [
     formula.textContent.split("=")[0], ...[...formula.querySelectorAll("mn")].map(n => n.textContent)])"""
 
 
+INPUTS = {"slider": "slide", "textbox": "box", "combobox": "choice", "checkbox": "switch"}
+"""What marks an input of each role."""
 LIT = """() => [...document.querySelectorAll(".s3-highlighted")].map((node) => [node.tagName.toLowerCase(), node.dataset.link])"""
 
 
@@ -84,6 +87,7 @@ class Sockets:
 
     def __init__(self, page: Page) -> None:
         self.scene = SceneModel()
+        self.column = ColumnModel()
         self.camera: Message = {}
         self.sent: list[Message] = []
         self.told: list[Message] = []
@@ -94,16 +98,27 @@ class Sockets:
     @property
     def state(self) -> Message:
         """The newest state that the server told."""
-        return next(m for m in reversed(self.told) if m["type"] == "state")
+        return self.states[-1]
+
+    @property
+    def states(self) -> list[Message]:
+        """Every state that the server told."""
+        return [message for message in self.told if message["type"] == "state"]
 
     def _opened(self, socket: WebSocket) -> None:
         if "/channel" in socket.url:
-            socket.on("framereceived", lambda data: self.told.append(json.loads(data)))
+            self.column = ColumnModel()
+            socket.on("framereceived", self._heard)
             return
         self.connected += 1
         self.scene = scene = SceneModel()
         socket.on("framereceived", scene.feed)
         socket.on("framesent", self._sent)
+
+    def _heard(self, data: bytes | str) -> None:
+        message = json.loads(data)
+        self.told.append(message)
+        self.column.take(message)
 
     def _sent(self, data: bytes | str) -> None:
         assert isinstance(data, bytes)
@@ -133,6 +148,12 @@ class Learner:
         """Open a sim's address and wait until it is live."""
         self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
         self.wait_live()
+
+    def open_column(self, path: str) -> None:
+        """Open a sim's address without its scene, which takes most of the time: the column beside it works."""
+        self.page.route("**/viser/*/loader.js", lambda route: route.fulfill(body="", content_type="text/javascript"))
+        self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
+        self.until(lambda: bool(self.sockets.column.parts and self.sockets.states))
 
     def open_page(self, path: str) -> None:
         """Open a page that holds the sim in a frame, and go on in the frame."""
@@ -205,10 +226,6 @@ class Learner:
         state: Params = sim.params.model_validate(self.params)
         return state
 
-    def label(self, name: str) -> str:
-        """What stands beside the control of a parameter now."""
-        return worded(Offers(self.state), name)
-
     def solved(self) -> dict[str, Any]:
         """What the API answers for the present state."""
         address = f"{self.url}/api/sims/{self.slug}/solve"
@@ -237,7 +254,7 @@ class Learner:
         self.page.mouse.click(x, y)
 
     def lights(self, name: str, tags: str) -> bool:
-        """Whether all that is lit up in pictures and tables has that name; `tags` says what it is: "g g tr"."""
+        """Whether all that is highlighted in the column has that name; `tags` says what it is: "g g tr"."""
         lit: list[list[str]] = self.frame.evaluate(LIT)
         return sorted(lit) == sorted([tag, name] for tag in tags.split())
 
@@ -246,23 +263,42 @@ class Learner:
         row = self.frame.locator(f'tr.s3-selected[data-link="{name}"]')
         return row.locator('button[aria-pressed="true"]').count() == 1 == self.frame.locator("tr.s3-selected").count()
 
-    # ---- the panel
+    # ---- the column
 
     def control(self, role: Any, name: str) -> Locator:
-        return self.frame.get_by_role(role, name=self.label(name), exact=True)
+        """An input by the name of its parameter, or of an entry, as `angles.2`; the fold that it is in is opened."""
+        found = self.frame.locator(f'[data-{INPUTS[role]}="{name}"]').first
+        self.unfold(found)
+        return found
+
+    def find(self, role: Any, name: str) -> Locator:
+        """Something of the column by its role and name; the fold that it is in is opened."""
+        found = self.frame.get_by_role(role, name=name, exact=True, include_hidden=True).first
+        self.unfold(found)
+        return found
+
+    def unfold(self, inside: Locator) -> None:
+        """Open the fold that something is in."""
+        fold = inside.locator("xpath=ancestor::details[not(@open)]/summary")
+        if fold.count():
+            fold.click()
 
     def slide(self, name: str, value: float) -> None:
         """Take a slider's thumb with the mouse and pull it to a value, or as near as a pixel comes."""
-        low, high = self.state.bounds(name)
-        thumb = self.control("slider", name)
-        thumb.scroll_into_view_if_needed()
-        track = box(thumb.locator("xpath=.."))
-        at = box(thumb)
-        y = at["y"] + at["height"] / 2
+        slider = self.control("slider", name)
+        slider.scroll_into_view_if_needed()
+        low, high, now = (float(slider.evaluate(f"node => node.{each}")) for each in ("min", "max", "value"))
+        track = box(slider)
+        y = track["y"] + track["height"] / 2
+
+        def at(value: float) -> float:
+            share = (value - low) / (high - low)
+            return track["x"] + THUMB / 2 + (track["width"] - THUMB) * share
+
         mouse = self.page.mouse
-        mouse.move(at["x"] + at["width"] / 2, y)
+        mouse.move(at(now), y)
         mouse.down()
-        mouse.move(track["x"] + track["width"] * (value - low) / (high - low), y, steps=6)
+        mouse.move(at(value), y, steps=6)
         mouse.up()
 
     def pull(self, start: tuple[float, float], dx: float, dy: float, *, key: str = "") -> None:
@@ -279,9 +315,8 @@ class Learner:
             keyboard.up(key)
 
     def says(self, words: str) -> None:
-        """Wait until the panel, the pictures or a notice say it."""
-        places = self.frame.locator(":is(.s3-readouts, .s3-panes, .s3-notice)")
-        places.get_by_text(words).first.wait_for()
+        """Wait until the column or a notice says it."""
+        self.frame.locator(":is(.s3-column, .s3-notice)").get_by_text(words).first.wait_for(state="attached")
 
     def press_keys(self, name: str, *keys: str) -> None:
         """Keys on a slider's thumb."""
@@ -291,27 +326,21 @@ class Learner:
 
     def type(self, name: str, text: str, *, box: int = 0) -> None:
         """Type into the number box of a control (of a vector's boxes, the one counted from 1), and press Enter."""
-        which = f", {box} of {len(self.params[name])}" if box else ""
-        field = self.frame.get_by_role("textbox", name=self.label(name) + which, exact=True)
-
-        def typed() -> None:
-            field.fill(text)
-            assert field.input_value() == text
-
-        self.until(typed)  # the page may be drawing the box anew at this moment
+        field = self.control("textbox", f"{name}.{box - 1}" if box else name)
+        field.fill(text)
         field.press("Enter")
 
     def choose(self, name: str, word: str | None) -> None:
-        """Open a dropdown and choose what is shown for a word, or for its absence."""
-        sim = by_slug(self.slug)
-        assert sim is not None
-        shown = sim.params().options(name)[word]
-        self.control("combobox", name).click()
-        self.frame.get_by_role("option", name=shown, exact=True).click()
+        """Choose what is shown for a word, or for its absence."""
+        found = self.control("combobox", name)
+        if found.evaluate("node => node.tagName") == "SELECT":
+            found.select_option(word or "")
+        else:
+            self.frame.locator(f'[data-choice="{name}"][value="{word or ""}"]').check()
 
     def press(self, label: str, *, force: bool = False) -> None:
-        """Press a button of the panel; by force also one that is disabled."""
-        self.frame.get_by_role("button", name=label, exact=True).click(force=force)
+        """Press a button of the column; by force also one that is disabled."""
+        self.find("button", label).click(force=force)
 
     # ---- checking
 
@@ -320,6 +349,7 @@ class Learner:
         got = {name: self.params[name] for name in expected}
         assert got == expected
         assert self.query() == self.sockets.state["query"]
+        assert self.scene.version == self.sockets.column.version == self.sockets.state["version"]
         return self.solved()
 
     def sees(self, **expected: Any) -> dict[str, Any]:
@@ -334,7 +364,7 @@ class Learner:
 
     def spoken(self) -> str:
         """What the live region says to those who listen."""
-        return self.frame.locator("[role=status][aria-live]").first.text_content() or ""
+        return self.frame.locator("[role=status][aria-live]").last.text_content() or ""
 
     def query(self) -> str:
         """The state in the address bar, without the page's own options."""

@@ -62,7 +62,7 @@ def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom:
     learner = classroom.open("camera/embed")
     frame = learner.frame
     agree(learner, selected="roof-near")
-    button = frame.get_by_role("button", name="Left cube, corner", exact=True)
+    button = learner.find("button", "Left cube, corner")
     button.scroll_into_view_if_needed()
     button.hover()
     learner.until(lambda: learner.lights("cube-left", "g tr"))

@@ -135,17 +135,14 @@ def test_presets_and_controls_answer(classroom: Classroom) -> None:
 
 def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classroom) -> None:
     learner = classroom.open("epipolar/embed?left=0,0,1&right=0.01,0,1")
-    boxes = learner.frame.get_by_role("textbox", name="Right camera")
-    boxes.nth(0).fill("0")
-    boxes.nth(0).press("Enter")
+    learner.type("right", "0", box=1)
     solution = agree(learner, right=[0, 0, 1])
     assert solution["F"] is None
     assert solution["pixel_left"] is not None
     assert any("no baseline" in text for text in learner.scene.labels().values())
     learner.says("without a baseline there is no epipolar plane")
     learner.until(lambda: "no F" in learner.spoken())
-    boxes.nth(0).fill("0.5")
-    boxes.nth(0).press("Enter")
+    learner.type("right", "0.5", box=1)
     assert agree(learner, right=[0.5, 0, 1])["rank"] == 2
 
 
@@ -159,7 +156,7 @@ def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(clas
     learner.until(lambda: learner.scene.visible("/lit"))
     np.testing.assert_allclose(learner.scene.world_pose("/lit/ball")[:3, 3], OTHERS[1])
 
-    row = frame.get_by_role("button", name="4", exact=True)
+    row = learner.find("button", "4")
     row.scroll_into_view_if_needed()
     row.hover()
     learner.until(lambda: learner.lights("4", everywhere))

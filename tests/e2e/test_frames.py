@@ -102,7 +102,7 @@ def test_a_course_page_sets_the_page_of_a_sim_and_hears_what_it_needs(classroom:
     say(learner, {"type": "sim3:set", "view": view, "params": {"yaw": 60}})
     learner.sees(yaw=60)
     learner.until(lambda: near(learner, view))
-    assert "view=4,1,2,0,0.5,0" in learner.address
+    learner.until(lambda: "view=4,1,2,0,0.5,0" in learner.address)
 
     height = learner.until(lambda: heard(learner, "sim3:height")[-1]["height"])
     assert 480 <= height <= 900

@@ -114,7 +114,7 @@ def test_trying_the_lost_axis_steps_under_reduced_motion_and_stops_at_a_touch(cl
     learner.says("No ring rates turn the aircraft towards it")
     learner.sees(yaw=90, pitch=90, roll=90)
     learner.sees(yaw=90, pitch=60, roll=90, show_reach=True)
-    told = [message["params"]["ghost"][1] for message in learner.sockets.told]
+    told = [message["params"]["ghost"][1] for message in learner.sockets.states]
     assert set(told) == {0, 90, 60}, "the ghost moved by steps"
 
     learner.press("Reset")

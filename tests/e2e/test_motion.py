@@ -6,14 +6,14 @@ import numpy as np
 from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
+from tests.e2e.learner import Learner
 
 SMALL: ViewportSize = {"width": 640, "height": 480}
 
 
 def progress(learner: Learner, since: int = 0) -> list[float]:
     """How far the sequence was in each state that the server told."""
-    return [message["params"]["progress"] for message in learner.sockets.told[since:]]
+    return [message["params"]["progress"] for message in learner.sockets.states[since:]]
 
 
 def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classroom) -> None:
@@ -42,8 +42,7 @@ def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classr
         learner.type("roll", "10")
         learner.press("Animate sequence")
         learner.until(lambda: 0 < learner.params["progress"] < 2)
-        thumb = box(learner.control("slider", "roll"))
-        learner.pull((thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2), -25, 0)
+        learner.slide("roll", -40)
         learner.until(lambda: learner.params["roll"] < 0)
         learner.page.wait_for_timeout(500)  # the last of the drag
         stopped = learner.sockets.state
@@ -57,7 +56,7 @@ def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classr
 
 def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
     learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL, reduced_motion="reduce")
-    since = len(learner.sockets.told)
+    since = len(learner.sockets.states)
     learner.press("Animate sequence")
     learner.until(lambda: learner.params["progress"] == 0)
     learner.until(lambda: learner.params["progress"] == 3)

@@ -29,9 +29,9 @@ def fits(learner: Learner) -> None:
     assert scroll <= width, "the page scrolls sideways"
 
 
-def sheet_top(learner: Learner) -> float:
-    """Where viser's bottom sheet begins."""
-    return box(learner.control("combobox", "order" if learner.slug == "euler-angles" else "method"))["y"]
+def column_top(learner: Learner) -> float:
+    """Where the column below the scene begins."""
+    return box(learner.frame.locator(".s3-column"))["y"]
 
 
 def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
@@ -39,22 +39,24 @@ def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
     fits(learner)
     ends = learner.scene.points("/turn1/turn2/turn3/arrows")
     tips = ends[:, 0] + 0.94 * (ends[:, 1] - ends[:, 0])
-    top = sheet_top(learner)
+    top = column_top(learner)
 
     def look() -> None:
         picture = Picture(learner)
         for axis, tip in zip("xyz", tips, strict=True):
             x, y = picture.place(tip)
             assert 0 < x < 390, f"the {axis} axis is off the screen"
-            assert 0 < y < top, f"the sheet covers the {axis} axis"
+            assert 0 < y < top, f"the {axis} axis isn't above the column"
         assert picture.shows("x", tips[0])
         assert picture.shows("z", tips[2])
 
     learner.until(look)
 
-    thumb = box(learner.control("slider", "roll"))
-    x, y = thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2
-    touch(learner, (x, y), (x + 10, y), (x + 25, y), (x + 40, y))
+    slider = learner.control("slider", "roll")
+    slider.scroll_into_view_if_needed()
+    track = box(slider)
+    x, y = track["x"] + track["width"] * (0.5 + 10 / 360), track["y"] + track["height"] / 2
+    touch(learner, *((x + 4 * k, y) for k in range(13)))
     learner.until(lambda: learner.params["roll"] > 40)
     learner.until(  # the last of the drag may still be on its way
         lambda: np.testing.assert_allclose(
@@ -63,8 +65,7 @@ def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
             atol=1e-6,
         )
     )
-    learner.control("combobox", "frame").tap()
-    learner.frame.get_by_role("option", name="Extrinsic: fixed axes").tap()
+    learner.choose("frame", "extrinsic")
     learner.sees(frame="extrinsic")
 
     before = learner.sockets.camera["position"]
@@ -84,7 +85,7 @@ def test_triangulation_on_a_phone(classroom: Classroom) -> None:
     assert learner.frame.evaluate("([x, y]) => !!document.elementFromPoint(x, y).closest('[data-handle]')", [x, y]), (
         "something covers the left point"
     )
-    touch(learner, (x, y), (x + 4, y), (x + 10, y + 2), (x + 16, y + 4))
+    touch(learner, *((x + 4 * k / 3, y + k / 3) for k in range(13)))
     learner.until(lambda: learner.params["left_uv"][0] > 410 + 8 / scale)
     goal = [410 + 16 / scale, 210 + 4 / scale]
     learner.until(lambda: np.testing.assert_allclose(learner.params["left_uv"], goal, atol=2 / scale))

@@ -47,7 +47,7 @@ def test_voxels_thin_the_cloud_and_zero_brings_it_back(classroom: Classroom) -> 
     assert more["points_out"] != few["points_out"]
     learner.choose("color", "height")
     learner.until(lambda: learner.params["color"] == "height")
-    learner.until(lambda: "Height" in learner.scene.html("s3-pane"))
+    learner.until(lambda: "Height" in learner.sockets.column.html("pane"))
     learner.type("voxel_size", "0")
     assert agree(learner, voxel_size=0)["points_out"] == few["points_in"]
 
@@ -66,7 +66,7 @@ def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
         lambda: np.testing.assert_allclose(learner.scene.world_pose("/selected")[:3, 3], chosen["position"], atol=1e-6)
     )
     assert learner.reads("p", chosen["position"])
-    learner.type("selected", "-1")
+    learner.type("selected", "")
     learner.sees(selected=None)
 
 
@@ -79,7 +79,7 @@ def test_a_registration_is_stepped(classroom: Classroom) -> None:
     assert after["rmse"] < before["rmse"]
     learner.until(lambda: np.testing.assert_allclose(learner.scene.world_pose("/marked"), after["T"], atol=1e-6))
     assert learner.reads("T", after["T"])
-    assert "Error of the pairs" in learner.scene.html("s3-pane")
+    assert "Error of the pairs" in learner.sockets.column.html("pane")
 
 
 def test_long_work_says_how_far_it_is_and_is_cancelled(classroom: Classroom, tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def cancelled(learner: Learner, neighbors: int) -> bool:
 
 def bring(learner: Learner, path: Path) -> None:
     """Open the folder of one's own data, and choose a file there."""
-    learner.frame.get_by_role("button", name="Your own data").click()
+    learner.frame.locator("summary", has_text="Your own data").click()
     learner.frame.get_by_label("Bring a file").set_input_files(path)
 
 
@@ -126,7 +126,7 @@ def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_pat
     solution = learner.until(lambda: agree_on_file(learner))
     assert solution["points_in"] == 2
     np.testing.assert_allclose(learner.scene.points("/cloud/points"), points, atol=1e-6)
-    assert "my scan.ply" in learner.scene.html("s3-readouts")
+    assert "my scan.ply" in learner.sockets.column.html("read")
     with learner.page.expect_download() as download:
         learner.frame.get_by_role("button", name="Download").click()
     np.testing.assert_array_equal(read("a.ply", download.value.path().read_bytes(), 10**6).points, points)
@@ -154,7 +154,7 @@ def test_a_file_that_takes_long_is_given_up(classroom: Classroom, tmp_path: Path
     learner.page.context.new_cdp_session(learner.page).send("Network.emulateNetworkConditions", slow)
     bring(learner, path)
     learner.frame.get_by_role("progressbar", name="Upload").wait_for()
-    learner.press("Cancel")
+    learner.frame.locator(".s3-upload").get_by_role("button", name="Cancel").click()
     status = learner.frame.locator("[data-s3-file-status]")
     learner.until(lambda: "given up. Nothing has changed" in (status.text_content() or ""))
     assert learner.params["dataset"] == "room"
@@ -168,8 +168,7 @@ def test_a_file_is_brought_in_a_sandboxed_frame(classroom: Classroom, tmp_path: 
     with CourseSite() as course:
         course.show(learner, "point-cloud/embed?voxel_size=0.5", 'sandbox="allow-scripts"')
         learner.enter_frame()
-        learner.frame.get_by_role("button", name="Your own data").click()
-        learner.frame.get_by_label("Bring a file").set_input_files(path)
+        bring(learner, path)
         assert learner.until(lambda: agree_on_file(learner))["points_in"] == 3
         learner.says("“mine.csv”")
 
@@ -177,5 +176,5 @@ def test_a_file_is_brought_in_a_sandboxed_frame(classroom: Classroom, tmp_path: 
 @pytest.mark.parametrize("query", ["dataset=file&file=upload-of-yesterday"])
 def test_a_file_that_is_gone_is_said_in_words(classroom: Classroom, query: str) -> None:
     learner = classroom.open(f"point-cloud/embed?{query}", size=SMALL)
-    learner.until(lambda: "gone" in learner.scene.html("s3-readouts"))
+    learner.until(lambda: "gone" in learner.sockets.column.html("read"))
     assert not layers(learner)

@@ -6,17 +6,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from playwright.sync_api import Locator
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner
 from tests.e2e.picture import Picture
 
 Array = npt.NDArray[np.float64]
-
-
-def entry(learner: Learner, role: Any, name: str) -> Locator:
-    return learner.frame.get_by_role(role, name=name, exact=True)
 
 
 def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
@@ -47,25 +42,16 @@ def test_sliders_turn_and_stretch_the_arm_and_the_link_restores_it(classroom: Cl
     before = tip(learner)
     shown(learner)
 
-    thumb = entry(learner, "slider", "Joint 2 angle (°)")
-    thumb.press("ArrowRight")
-    thumb.press("ArrowRight")
+    learner.press_keys("angles.1", "ArrowRight", "ArrowRight")
     agree(learner, angles=[30, 41, -30], trace=2)
-    field = entry(learner, "textbox", "Joint 1 angle (°)")
-    field.fill("75")
-    field.press("Enter")
+    learner.type("angles.0", "75")
     agree(learner, angles=[75, 41, -30], trace=1)
     shown(learner)
     assert not Picture(learner).shows("x", before, within=1), "the end effector is still where it was"
 
-    learner.frame.get_by_role("button", name="Link lengths").click()
-    field = entry(learner, "textbox", "Link 3 length (m)")
-    field.fill("0.9")
-    field.press("Enter")
+    learner.type("lengths.2", "0.9")
     agree(learner, lengths=[1, 0.8, 0.9])
-    learner.frame.get_by_role("button", name="Joint axes").press("Enter")
-    entry(learner, "combobox", "Joint 3 axis").click()
-    learner.frame.get_by_role("option", name="z: sideways", exact=True).click()
+    learner.choose("axes.2", "z")
     solution = agree(learner, axes="zyz")
 
     learner.choose("show", "composed")
@@ -98,22 +84,18 @@ def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) 
     learner = classroom.open("transform-chain/embed?angles=10,20,30&swap=2")
     learner.press("Add link")
     agree(learner, angles=[10, 20, 30, 0], lengths=[1, 0.8, 0.5, 0.4], axes="zyyy", swap=2)
-    entry(learner, "slider", "Joint 4 angle (°)").press("ArrowLeft")
+    learner.press_keys("angles.3", "ArrowLeft")
     agree(learner, angles=[10, 20, 30, -0.5])
-    entry(learner, "combobox", "Swap transforms").click()
-    learner.frame.get_by_role("option", name="3 ↔ 4", exact=True).click()
+    learner.choose("swap", "3")
     solution = agree(learner, swap=3)
     pose = learner.scene.world_pose("/swapped_end")
     np.testing.assert_allclose(pose, solution["swapped_end_effector"], rtol=0, atol=1e-6)
     learner.press("Remove link")
     agree(learner, angles=[10, 20, 30], lengths=[1, 0.8, 0.5], axes="zyy", swap=None)
-    learner.until(lambda: entry(learner, "slider", "Joint 4 angle (°)").count() == 0)
-    learner.frame.get_by_role("button", name="Presets").click()
+    learner.until(lambda: learner.frame.locator('[data-slide="angles.3"]').count() == 0)
     learner.press("Planar 2R arm")
     agree(learner, axes="zz", lengths=[1, 0.8])
-    field = entry(learner, "textbox", "Joint 2 angle (°)")
-    field.fill("0")
-    field.press("Enter")
+    learner.type("angles.1", "0")
     agree(learner, angles=[30, 0])
     learner.says("Singular pose: the joints can move")
     learner.until(lambda: "singular pose" in learner.spoken())
@@ -131,9 +113,7 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
     assert solution["pull_distance"] is None
 
-    boxes = learner.frame.get_by_role("textbox", name="End effector")
-    boxes.nth(2).fill("9")
-    boxes.nth(2).press("Enter")
+    learner.type("/grip", "9", box=3)
     learner.until(lambda: learner.params["pull"] is not None)
     assert agree(learner)["pull_outside"]
     learner.says("Out of reach: this is as near")
@@ -144,7 +124,7 @@ def test_a_joint_is_swept_and_stops_at_the_first_touch(classroom: Classroom) -> 
     learner = classroom.open("transform-chain/embed?trace=2")
     learner.press("Sweep joint")
     learner.until(lambda: learner.params["angles"][1] != 40)
-    entry(learner, "slider", "Joint 1 angle (°)").press("ArrowRight")
+    learner.press_keys("angles.0", "ArrowRight")
     learner.until(lambda: learner.params["angles"][0] == 30.5)
     stopped = agree(learner, trace=1)
     assert stopped == agree(learner)

@@ -128,7 +128,7 @@ def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
     solution = agree(learner, right_uv=[320, 210])
     assert solution["ray_gap"] > 0.001, "rays of pixels in different rows miss each other"
     assert solution["by_method"]["optimal"]["reprojection_rms"] <= solution["by_method"]["dlt"]["reprojection_rms"]
-    cells = frame.locator(".s3-table tr").nth(1).locator("td").all_text_contents()
+    cells = frame.locator('.s3-table tr[data-link="dlt"] td').all_text_contents()
     assert cells[0] == f"{solution['by_method']['dlt']['reprojection_left']:.3f}"
 
     handle = frame.locator("[data-handle=right_uv]")
@@ -172,9 +172,7 @@ def test_each_control_of_triangulation_answers(classroom: Classroom) -> None:
     learner.press("Noise on or off")
     agree(learner, noise=0)
 
-    boxes = learner.frame.get_by_role("textbox", name="3D point")
-    boxes.nth(0).fill("-0.5")
-    boxes.nth(0).press("Enter")
+    learner.type("/point", "-0.5", box=1)
     moved = learner.until(lambda: solved_at(learner, -0.5))
     agree(learner)
     np.testing.assert_allclose(moved[0], -0.5, atol=1e-3)
@@ -213,13 +211,14 @@ def test_an_image_point_lights_up_with_its_ray_and_a_method_is_selected_wherever
     assert not learner.scene.visible("/right/lit")
 
     row = frame.locator('tr[data-link="right"]')
+    learner.unfold(row)
     row.scroll_into_view_if_needed()
     row.hover()
     learner.until(lambda: learner.lights("right", "g line tr"))
     learner.until(lambda: learner.scene.visible("/right/lit"))
     assert not learner.scene.visible("/left/lit")
 
-    button = frame.get_by_role("button", name="DLT", exact=True)
+    button = learner.find("button", "DLT")
     button.scroll_into_view_if_needed()
     button.hover()
     learner.until(lambda: learner.lights("dlt", "g g tr"))

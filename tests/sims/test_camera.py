@@ -22,7 +22,6 @@ from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
 from sims.camera.solution import LIFT
 from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
 from sims.kit import readout
-from sims.kit.viewer import Look
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
@@ -326,7 +325,7 @@ def test_frustum_and_picture_are_the_true_ones(rig: Rig, p: CameraParams) -> Non
 def test_the_picture_beside_the_scene_shows_the_same_pixels(rig: Rig, p: CameraParams) -> None:
     rig.show(p)
     s = solve(p)
-    marks = {e.get("data-link"): e for e in xml(rig.model.html("s3-panes")).iter() if e.get("data-link")}
+    marks = {e.get("data-link"): e for e in xml(rig.column.html("pane")).iter() if e.get("data-link")}
     assert set(marks) == {point.name for point in s.points if point.pixel is not None}
     for point in s.points:
         if point.in_image:
@@ -334,7 +333,7 @@ def test_the_picture_beside_the_scene_shows_the_same_pixels(rig: Rig, p: CameraP
             assert tuple(map(float, found)) == pytest.approx(point.pixel, rel=0, abs=0.006)
         elif point.pixel is not None:
             assert next(marks[point.name].iter("path")) is not None, "an arrowhead at the border"
-    assert "∞" in rig.model.html("s3-panes") or all(m.pixel or not m.homogeneous for m in s.vanishing)
+    assert "∞" in rig.column.html("pane") or all(m.pixel or not m.homogeneous for m in s.vanishing)
 
 
 def test_the_street_stands_on_the_ground(rig: Rig) -> None:
@@ -353,9 +352,9 @@ def test_a_point_is_selected_in_the_scene_and_lights_up_everywhere(rig: Rig) -> 
     rig.browser.click("/points/far-post")
     rig.settle()
     assert rig.session.params.selected == "far-post"  # type: ignore[attr-defined]
-    chosen = [e for e in xml(rig.model.html("s3-panes")).iter() if "s3-selected" in str(e.get("class"))]
+    chosen = [e for e in xml(rig.column.html("pane")).iter() if "s3-selected" in str(e.get("class"))]
     assert [e.get("data-link") for e in chosen] == ["far-post"]
-    rows = [e for e in xml(rig.model.html("s3-readouts")).iter("tr") if e.get("class") == "s3-selected"]
+    rows = [e for e in xml(rig.column.html("read")).iter("tr") if e.get("class") == "s3-selected"]
     assert [e.get("data-link") for e in rows] == ["far-post"]
     np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], PLACES["far-post"])
     assert rig.model.labels()["/selected/label"] == TITLES["far-post"].lower()
@@ -392,12 +391,12 @@ def test_every_point_can_be_clicked_and_its_row_pressed(rig: Rig) -> None:
     for name in NAMES:
         assert rig.model.node(f"/points/{name}").clicks
         np.testing.assert_allclose(rig.model.world_pose(f"/points/{name}")[:3, 3], PLACES[name])
-    rows = [e.get("data-link") for e in xml(rig.model.html("s3-readouts")).iter("tr") if e.get("data-link")]
+    rows = [e.get("data-link") for e in xml(rig.column.html("read")).iter("tr") if e.get("data-link")]
     assert rows == list(NAMES)
 
 
 def test_somebody_who_watches_selects_nothing() -> None:
-    with Rig(SIM, look=Look(watching=True)) as rig:
+    with Rig(SIM, watching=True) as rig:
         rig.browser.click("/points/far-post")
         rig.settle()
         assert rig.session.params == START
@@ -483,8 +482,8 @@ def test_grips_move_and_turn_the_camera_and_the_numbers_agree(rig: Rig) -> None:
     toward = np.array(aim) - p.position
     np.testing.assert_allclose(pose(p)[0][2], toward / np.linalg.norm(toward), rtol=0, atol=1e-9)
     assert p.roll == 20.0
-    assert rig.browser.control("pan").value == pytest.approx(p.pan)
-    assert rig.browser.control("tilt").value == pytest.approx(p.tilt)
+    assert rig.column.values["pan"] == pytest.approx(p.pan)
+    assert rig.column.values["tilt"] == pytest.approx(p.tilt)
     np.testing.assert_allclose(rig.model.world_pose("/camera")[:3, :3], pose(p)[0].T, rtol=0, atol=1e-9)
 
 

@@ -224,7 +224,7 @@ def test_axes_change_and_neither_car_nor_point_moves(rig: Rig, convention: Conve
     close(drawn_axes(model), axes_on_paper(convention, handed), atol=1e-6)
     reading = model.labels()["/point/label"]
     assert reading == in_words(solve(rig.session.params).cartesian)  # type: ignore[arg-type]
-    assert model.control("Point x, y, z").value == pytest.approx(own_reading(rig.session.params, READINGS[convention]))  # type: ignore[arg-type]
+    assert rig.column.vector("point") == pytest.approx(own_reading(rig.session.params, READINGS[convention]))  # type: ignore[arg-type]
 
 
 def in_words(point: Array | None) -> str:
@@ -243,7 +243,7 @@ def test_axes_are_handed_as_they_are_labelled(rig: Rig, convention: Convention, 
     close(axes, axes_on_paper(convention, handed), atol=1e-6)
     hand = "right" if np.linalg.det(axes) > 0 else "left"
     assert hand == (handed or ON_PAPER[convention][3])
-    assert f"{hand.capitalize()}-handed: fingers of the {hand} hand" in model.html("s3-readouts")
+    assert f"{hand.capitalize()}-handed: fingers of the {hand} hand" in rig.column.html("read")
     assert model.labels()[f"/rule/{hand}/label"] == f"{hand} hand"
     assert "/rule/{}/label".format({"right": "left", "left": "right"}[hand]) not in model.labels()
     for axis, letter, path in zip(axes.T, "XYZ", ("/axes", "/axes", "/axes/third"), strict=True):
@@ -347,13 +347,13 @@ def test_what_w_does_is_drawn_and_said(rig: Rig, w: float) -> None:
     if w == 0.0:
         close(model.world_pose("/point")[:3, 3], s.tip, atol=1e-12)
         assert labels["/point/label"].startswith("direction (1.00, −0.80, 0.60)")
-        assert "w = 0: no point, but a direction" in model.html("s3-readouts")
+        assert "w = 0: no point, but a direction" in rig.column.html("read")
     elif model.visible("/point"):
         close(model.world_pose("/point")[:3, 3], s.point_world, rtol=1e-12, atol=0)
     else:
         assert w < 1e-3
     assert ("/away/label" in labels) == (away and w > 0)
-    assert ("Out of view" in model.html("s3-readouts")) == (away and w > 0)
+    assert ("Out of view" in rig.column.html("read")) == (away and w > 0)
     assert model.visible("/undivided") == (w not in (0.0, 1.0))
     if model.visible("/undivided"):
         close(model.world_pose("/undivided")[:3, 3], s.undivided, atol=1e-12)

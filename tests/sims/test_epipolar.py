@@ -479,7 +479,7 @@ def test_trouble_is_said_in_the_scene_and_beside_it(rig: Rig, params: EpipolarPa
     s = solve(params)
     trouble = s.F is None or s.on_baseline or s.pixel_left is None or s.pixel_right is None
     assert rig.model.visible("/warning") == trouble
-    assert not trouble or "s3-warn" in rig.model.html("s3-readouts")
+    assert not trouble or "s3-warn" in rig.column.html("read")
 
 
 # ---- pictures
@@ -596,7 +596,7 @@ def kinds_of(html: str, name: str) -> list[str]:
 
 def test_every_point_is_linked_across_pictures_plan_table_and_scene(rig: Rig) -> None:
     rig.show(START.changed({"points": 12, "show_all_lines": True}))
-    pictures, table = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    pictures, table = rig.column.html("pane"), rig.column.html("read")
     for k in range(2, 13):
         assert kinds_of(pictures, f"{k}") == ["g s3-point"] * 3 + ["line"] * 2
         assert kinds_of(table, f"{k}") == ["tr"]
@@ -635,7 +635,7 @@ def test_a_point_that_is_selected_is_marked_everywhere(rig: Rig) -> None:
     rig.browser.click("/points/3")
     rig.settle()
     assert rig.session.params == START.changed({"selected": 3})
-    pictures, table = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    pictures, table = rig.column.html("pane"), rig.column.html("read")
     assert kinds_of(pictures, "3") == ["g s3-point s3-selected"] * 3
     assert (pictures + table).count("s3-selected") == 4
     assert kinds_of(table, "3") == ["tr s3-selected"]

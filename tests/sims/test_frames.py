@@ -133,44 +133,10 @@ def test_points_are_placed_scaled_and_shaped() -> None:
 
 
 def test_updates_of_what_is_not_there_are_noticed() -> None:
-    model = model_of(
-        tell("SetPositionMessage", "/a", position=(0.0, 0.0, 0.0)),
-        {"type": "GuiUpdateMessage", "uuid": "x", "updates": {"value": 1}},
-    )
-    assert model.strays == ["SetPositionMessage for /a", "GuiUpdateMessage of value"]
+    model = model_of(tell("SetPositionMessage", "/a", position=(0.0, 0.0, 0.0)))
+    assert model.strays == ["SetPositionMessage for /a"]
     with pytest.raises(KeyError, match="no node '/a'"):
         model.node("/a")
-
-
-# ---- the panel
-
-
-def element(uuid: str, label: str, order: float, container: str = "root", **more: Any) -> dict[str, Any]:
-    props = {"label": label, "order": order, **more}
-    return {"type": "GuiSliderMessage", "uuid": uuid, "container_uuid": container, "value": 1, "props": props}
-
-
-def test_controls_are_found_by_label_and_follow_updates() -> None:
-    model = model_of(
-        element("1", "Yaw ψ (°)", 1.0, min=0, max=10),
-        element("2", "Yaw rate", 2.0),
-        {"type": "GuiUpdateMessage", "uuid": "1", "updates": {"value": 5, "max": 20}},
-    )
-    assert model.control("Yaw ψ").value == 5
-    assert model.control("Yaw ψ").bounds == (0, 20)
-    with pytest.raises(KeyError, match="2 elements are called 'Yaw'"):
-        model.control("Yaw")
-    with pytest.raises(KeyError, match="0 elements"):
-        model.control("Roll")
-
-
-def test_the_panel_is_read_in_its_order_and_folders() -> None:
-    model = model_of(element("f", "Folder", 2.0), element("b", "Last", 3.0), element("a", "Inside", 9.0, "f"))
-    model.apply(element("c", "First", 1.0))
-    assert [e.label for e in model.ordered()] == ["First", "Folder", "Inside", "Last"]
-    assert model.path(model.control("Inside")) == ("Folder",)
-    model.apply({"type": "GuiRemoveMessage", "uuid": "f"})
-    assert [e.label for e in model.ordered()] == ["First", "Last"]
 
 
 # ---- comparing

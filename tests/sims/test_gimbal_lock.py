@@ -248,7 +248,7 @@ def test_lost_axis_is_drawn_at_lock_with_words(rig: Rig, changes: dict[str, Any]
         np.testing.assert_allclose(tail, 0.0, rtol=0, atol=1e-12)
         np.testing.assert_allclose(tip / np.linalg.norm(tip), sign * np.asarray(lost), rtol=0, atol=1e-6)
     assert rig.model.labels()["/reach/lost/label"] == "⚠ no ring turns about this"
-    assert "s3-warn" in rig.model.html("s3-readouts")
+    assert "s3-warn" in rig.column.html("read")
 
 
 @pytest.mark.parametrize("pitch", [0.0, 45.0, NEAR_PITCH - 0.01, NEAR_PITCH + 0.01, 89.99, 90.0, 91.0, -75.0, 180.0])
@@ -259,7 +259,7 @@ def test_nearness_is_that_of_the_smallest_singular_value(rig: Rig, pitch: float)
     locked = least < 1e-6
     assert rig.model.visible("/reach/lost") == locked
     assert rig.model.visible("/reach/weak") == (not locked and least < NEAR)
-    html = rig.model.html("s3-readouts")
+    html = rig.column.html("read")
     assert ("s3-near" in html, "s3-warn" in html) == (not locked and least < NEAR, locked)
     assert ("⚠" in words(readout.render(SIM.readouts(p, solve(p))))) == (least < NEAR)
     if least < NEAR and not locked:

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sims.kit.palette import LIGHT
-from sims.kit.pane import render
+from sims.kit.pane import content, figure
 from sims.kit.plot import END, FLOOR, LEFT, TOP, Plot, room, step, ticks
 from tests.sims.markup import bad_attributes, mistakes, words, xml
 
@@ -48,7 +47,7 @@ def test_ticks_have_as_many_decimals_as_they_need(greatest: float, expected: lis
 def test_ticks_of_angles_stand_where_they_are_asked_for() -> None:
     assert [text for _, text in ticks(180.0, gap=45.0)] == ["0", "45", "90", "135", "180"]
     made = Plot("p", "P", x="θ (°)", y="σ", x_max=180.0, y_max=1.0, x_step=45.0)
-    assert {"45", "90", "135"} <= set(words(render([made.pane()], LIGHT.style())).split())
+    assert {"45", "90", "135"} <= set(words(content(made.pane())).split())
 
 
 @given(st.floats(1e-6, 1e6), st.floats(1.1, 3))
@@ -68,13 +67,13 @@ def test_values_are_where_the_axes_say() -> None:
 
 def test_a_plot_is_well_formed_named_and_alone_in_its_row() -> None:
     pane = plot().pane("4.00 m", (4.0, 0.05))
-    html = render([pane], LIGHT.style())
+    html = content(pane)
     assert not mistakes(html)
     assert not bad_attributes(html)
     svg = next(e for e in xml(html).iter() if e.tag.endswith("svg"))
     assert svg.get("aria-label") == "Depth: 4.00 m"
     assert svg.get("role") == "img"
-    assert "s3-wide" in html
+    assert "s3-wide" in figure(pane)
     assert {"depth (m)", "σ (m)", "b", "2 b"} <= {(e.text or "") for e in svg.iter() if e.tag.endswith("text")}
     assert words(html).startswith("Depth 4.00 m")
 

@@ -11,9 +11,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from geometry import clouds, se3
-from sims.kit.layout import LAYOUT
 from sims.kit.palette import before_film, before_tone_mapping
-from sims.kit.viewer import Look
+from sims.kit.scene.view import FIELD
 from sims.point_cloud import SIM, CloudParams, derived, processes, solve
 from sims.point_cloud import colors as colors_to_send
 from sims.point_cloud.actions import pick, play
@@ -24,6 +23,7 @@ from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.params import VIEWS
 from sims.point_cloud.solution import ply, shown_points
 from tests.server import Rig
+from tests.sims.markup import xml
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +87,7 @@ def test_the_selected_point_is_ringed_and_read_out(rig: Rig) -> None:
     assert chosen is not None
     np.testing.assert_allclose(rig.model.world_pose("/selected")[:3, 3], chosen.position, atol=1e-6)
     np.testing.assert_allclose(rig.model.points("/cloud/points")[4711], chosen.position, atol=1e-6)
-    html = rig.model.html("s3-readouts")
+    html = rig.column.html("read")
     for value in chosen.position:
         assert f"{abs(value):.3f}" in html
     show(rig)
@@ -164,11 +164,11 @@ def test_the_surface_variation_is_the_share_of_the_least_variance(rig: Rig) -> N
     chosen = solve(params).selected
     assert chosen is not None
     assert chosen.variation == pytest.approx(values[0] / values.sum(), abs=1e-6)
-    assert f"{chosen.variation:.4f}" in rig.model.html("s3-readouts")
+    assert f"{chosen.variation:.4f}" in rig.column.html("read")
     tally = solve(params).drawn.tally
     assert tally is not None
     assert 0.0 == tally.low < tally.high <= 1.0 / 3.0
-    assert f"{tally.high:.2f}" in rig.model.html("s3-pane")
+    assert f"{tally.high:.2f}" in rig.column.html("pane")
     assert tally.counts.sum() == len(points)
 
 
@@ -214,19 +214,23 @@ def test_another_cloud_is_looked_at_from_where_all_of_it_is_seen(rig: Rig) -> No
     np.testing.assert_array_equal(rig.model.latest["SetCameraPositionMessage"]["position"], position)
 
 
-@pytest.mark.parametrize(("look", "share"), [(Look(), 610 / 600), (Look(width=760), 460 / 600), (Look(width=390), 1.0)])
-def test_another_cloud_fits_between_the_panels(look: Look, share: float) -> None:
-    """The page of 700 × 600 pixels may have told its size before the panels took theirs."""
-    with Rig(SIM, look=look) as rig:
-        show(rig, dataset="statue")
-        position, middle = (
-            np.array(rig.model.latest[f"SetCamera{what}Message"][name])
-            for what, name in (("Position", "position"), ("LookAt", "look_at"))
-        )
-    half = np.arctan(np.tan(LAYOUT.field / 2) * min(1.0, share) * (LAYOUT.sheet if look.phone else 1.0))
+def test_the_page_hears_of_the_view_that_another_cloud_has(rig: Rig) -> None:
+    show(rig)
+    show(rig, dataset="statue")
     view = VIEWS["statue"]
-    assert np.linalg.norm(position - middle) * np.sin(half) == pytest.approx(view.radius)
-    np.testing.assert_allclose(middle, np.subtract(view.look_at, (0.0, 0.0, LAYOUT.lower * view.radius * look.phone)))
+    home = [message for message in rig.browser.told if message["type"] == "home"][-1]
+    assert home == {"type": "home", "view": [*view.position, *view.look_at], "radius": view.radius}
+    position, middle = (
+        np.array(rig.model.latest[f"SetCamera{what}Message"][name])
+        for what, name in (("Position", "position"), ("LookAt", "look_at"))
+    )
+    assert np.linalg.norm(position - middle) * np.sin(FIELD / 2) == pytest.approx(view.radius)
+    np.testing.assert_allclose(middle, view.look_at)
+
+
+def steps(rig: Rig) -> float:
+    """How far the slider of the steps goes."""
+    return float(next(xml(rig.column.parts["control:step"]).iter("input")).get("max", ""))
 
 
 # ---- picking
@@ -295,15 +299,15 @@ def test_the_slider_of_the_steps_ends_at_the_last_one(rig: Rig) -> None:
     found = solve(params).registration
     assert found is not None
     assert 3 < found.steps < processes.MOST_STEPS
-    assert rig.browser.control("step").props["max"] == found.steps
+    assert steps(rig) == found.steps
     rig.browser.move("step", found.steps)
     rig.settle()
-    assert "converged" in rig.model.html("s3-readouts")
+    assert "converged" in rig.column.html("read")
     rig.browser.press("step")
     rig.settle()
     assert rig.session.params.step == 0, "from the last step on to the first"  # type: ignore[attr-defined]
     show(rig, dataset="two-scans", process="ground", voxel_size=0.08)
-    assert rig.browser.control("step").props["max"] == 2
+    assert steps(rig) == 2
 
 
 def test_a_link_beyond_the_last_step_shows_the_last(rig: Rig) -> None:

@@ -15,11 +15,11 @@ from pydantic import ValidationError
 from geometry import GeometryError
 from sims import SIMS, by_slug
 from sims.kit import pane, readout
-from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Switch, Text, Vector
-from sims.kit.palette import DARK, LIGHT
+from sims.kit.column import Column
+from sims.kit.controls import key
+from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Slider, Switch, Text, Vector
 from sims.kit.params import Params
 from sims.kit.sim import Sim, jsonable
-from sims.kit.viewer import Look
 from tests.frames import differences
 from tests.server import Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
@@ -138,15 +138,14 @@ def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params:
 @each_state
 def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> None:
     solution = sim.solve(params)
-    for palette in (LIGHT, DARK):
-        shown = sim.panes(params, solution) if sim.panes else ()
-        assert len({p.name for p in shown}) == len(shown)
-        html = pane.render(shown, palette.style())
-        assert not bad_numbers(words(html))
-        assert not bad_attributes(html)
-        assert not mistakes(html)
-        handles = {e.get("data-handle") for e in xml(html).iter() if e.get("data-handle")}
-        assert handles <= set(sim.handles), "a handle that the session doesn't know"
+    shown = sim.panes(params, solution) if sim.panes else ()
+    assert len({p.name for p in shown}) == len(shown)
+    html = "".join(pane.content(p) for p in shown)
+    assert not bad_numbers(words(html))
+    assert not bad_attributes(html)
+    assert not mistakes(html)
+    handles = {e.get("data-handle") for e in xml(html).iter() if e.get("data-handle")}
+    assert handles <= set(sim.handles), "a handle that the session doesn't know"
 
 
 @each_state
@@ -169,9 +168,13 @@ def test_every_state_draws(rigs: dict[str, Rig], sim: AnySim, name: str, params:
     model = rig.model
     assert rig.session.params == params
     assert not rig.problems()
-    html = model.html()
-    assert not mistakes(html)
-    assert readout.render(sim.readouts(params, sim.solve(params))) in html
+    assert rig.column.version == model.version == rig.session.version
+    solution = sim.solve(params)
+    fresh = Column(sim)
+    assert rig.column.parts == fresh.parts(params, solution)
+    own = fresh.values(params, solution)
+    assert {each: rig.column.values[each] for each in own} == own
+    assert not mistakes("".join(rig.column.parts.values()))
     named = [text for text in model.labels().values() if len(text.strip("′'")) > 1]
     assert len(named) <= MOST_LABELS, named
     assert not [bad for text in named for bad in bad_numbers(text)]
@@ -189,7 +192,7 @@ def test_scene_depends_on_the_state_alone(rigs: dict[str, Rig], sim: AnySim, nam
     fresh = rig.join()
     rig.browsers.remove(fresh)
     fresh.leave()
-    assert not differences(rig.model.snapshot(), fresh.model.snapshot(), within=1e-12)
+    assert not differences(rig.browser.snapshot(), fresh.snapshot(), within=1e-12)
 
 
 @each_sim
@@ -210,38 +213,71 @@ def test_everybody_in_a_room_sees_the_same(sim: AnySim) -> None:
         second = rig.join()
         for _, params in [(n, p) for s, n, p in FEW if s is sim][::3]:
             rig.show(params)
-            assert not differences(rig.model.snapshot(), second.model.snapshot(), within=0.0)
+            assert not differences(rig.browser.snapshot(), second.snapshot(), within=0.0)
 
 
 @each_sim
-def test_dark_theme_and_watching_change_looks_alone(sim: AnySim) -> None:
+def test_the_dark_theme_changes_looks_alone(sim: AnySim) -> None:
     with Rig(sim) as rig:
-        dark = rig.join(Look(dark=True, watching=True)).model
+        dark = rig.join(dark=True).model
         assert dark.names == rig.model.names
         for name in dark.names:
             assert np.array_equal(dark.world_pose(name), rig.model.world_pose(name)), name
-        inputs = [e for e in dark.gui.values() if "disabled" in e.props]
-        assert inputs
-        assert all(e.props["disabled"] for e in inputs)
+
+
+# ---- the column
+
+
+@each_state
+def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
+    """Every part that a state has is on the page that begins with it, and the markup is sound."""
+    column, solution = Column(sim), sim.solve(params)
+    html = column.html(params, solution)
+    assert not mistakes(html)
+    assert not [bad for bad in bad_attributes(html) if not bad.startswith(("option", "button"))]  # which say "none"
+    page = xml(html)
+    places = [e.get("data-part") for e in page.iter() if e.get("data-part")]
+    assert len(set(places)) == len(places)
+    assert {*column.parts(params, solution)} <= {*places}
+    idents = [e.get("id") for e in page.iter() if e.get("id")]
+    assert len(set(idents)) == len(idents)
+    assert {*readout.folded(sim.readouts(params, solution))} <= {"", *sim.folds}, "a fold that isn't declared"
+
+
+@each_state
+def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) -> None:
+    caption = sim.caption(params, sim.solve(params))
+    assert caption.endswith(".")
+    assert caption[0].isupper() or caption.startswith("q ")
+    assert len(caption) <= 120
+    assert not bad_numbers(caption)
 
 
 @each_sim
-def test_without_controls_there_is_the_scene_alone(sim: AnySim) -> None:
-    with Rig(sim, look=Look(controls=False)) as rig:
-        assert not [e for e in rig.model.gui.values() if e.props.get("label")]
-        assert rig.model.names
+def test_few_controls_are_seen_at_first(sim: AnySim) -> None:
+    first = [name for name, kind in sim.params.kinds.items() if not kind.hidden and not kind.group]
+    assert 1 <= len(first) + len(sim.typed) <= 6
+    assert len([action for action in sim.actions if not action.group]) <= 5
 
 
 @each_sim
-def test_on_a_phone_pictures_are_where_they_are_needed(sim: AnySim) -> None:
-    """In one column: first of all where something in them is held, else between what is set and the read-outs."""
-    with Rig(sim, look=Look(width=390)) as rig:
-        paths = [rig.model.path(element)[0] for element in rig.model.ordered() if rig.model.path(element)]
-        order = [folder for folder in dict.fromkeys(paths) if folder in ("Pictures", "Actions", "Read-outs")]
-        held = sim.panes is not None and "data-handle" in rig.model.html("s3-panes")
-    assert order[-1] == "Read-outs"
-    assert ("Pictures" in order) == (sim.panes is not None)
-    assert (order[0] == "Pictures") == held
+def test_every_control_says_what_it_is(sim: AnySim) -> None:
+    page = xml(Column(sim).html(sim.params(), None))
+    for name in [n for n, kind in sim.params.kinds.items() if not kind.hidden]:
+        assert sim.params.model_fields[name].description
+    labelled = {e.get("for") for e in page.iter("label")}
+    for node in (*page.iter("input"), *page.iter("select")):
+        inside_label = node.get("type") in ("checkbox", "radio", "file")
+        assert inside_label or node.get("id") in labelled or node.get("aria-label"), node.attrib
+
+
+@each_sim
+def test_only_some_controls_can_be_asked_for(sim: AnySim) -> None:
+    wanted = next(name for name, kind in sim.params.kinds.items() if not kind.hidden)
+    page = xml(Column(sim).html(sim.params(), None, [wanted]))
+    shown = {str(e.get("data-control")).partition(".")[0] for e in page.iter() if e.get("data-control")}
+    assert shown == {wanted}
+    assert {e.get("data-act") for e in page.iter("button") if e.get("data-act")} == {"reset"}
 
 
 @each_sim
@@ -299,13 +335,16 @@ each_number = each(
 )
 
 
-def shown(sim: AnySim, params: Params, name: str) -> Any:
-    """What the control of a parameter should show."""
+def inputs(rig: Rig, name: str) -> Any:
+    """What the inputs of a parameter show."""
+    return rig.column.vector(name) if isinstance(rig.session.params.kinds[name], Vector) else rig.column.values[name]
+
+
+def shown(params: Params, name: str) -> Any:
+    """What the inputs of a parameter should show."""
     value = getattr(params, name)
     if isinstance(params.kinds[name], DROPDOWNS):
-        return sim.offers(params).options(name)[value]
-    if value is None:
-        return params.bounds(name)[0] - params.numeric[name].step
+        return key(value)
     return list(value) if isinstance(value, tuple) else value
 
 
@@ -327,31 +366,41 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         if isinstance(kind, Vector):
             aims = list(zip(*((low, high, high - step) for low, high in kind.each), strict=True))
     for aim in aims:
-        wanted = shown(sim, rig.session.params.model_copy(update={name: aim}), name)
-        rig.browser.move(name, wanted)
+        rig.browser.move(name, aim)
         rig.settle()
         assert getattr(rig.session.params, name) == pytest.approx(aim)
-        control = rig.browser.control(name)
-        assert control.value == pytest.approx(wanted)
+        wanted = shown(rig.session.params, name)
+        assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None)
+    if isinstance(kind, Vector):
+        rig.browser.move(f"{name}.1", kind.each[1][0])
+        rig.settle()
+        assert getattr(rig.session.params, name) == pytest.approx((*aims[-1][:1], kind.each[1][0], *aims[-1][2:]))
+    assert not rig.browser.refused
 
 
 @each_number
-def test_control_goes_back_to_a_value_that_is_allowed(rigs: dict[str, Rig], sim: AnySim, name: str) -> None:
+def test_a_slider_stops_at_its_end_and_a_box_refuses_what_is_beyond(
+    rigs: dict[str, Rig], sim: AnySim, name: str
+) -> None:
     rig = rigs[sim.slug]
     rig.show(sim.params())
     start = getattr(rig.session.params, name)
     low, high = rig.session.params.bounds(name)
-    for beyond, bound in ((low - 1000, low), (high + 1000, high), (high + 2000, high)):
-        kind = NUMERIC[sim.slug][name]
-        many = isinstance(kind, Vector)
-        rig.browser.move(name, [beyond for _ in start] if many else beyond)
-        rig.settle()
-        wanted: Any = bound
-        if isinstance(kind, Vector):
-            least, greatest = zip(*kind.each, strict=True)
-            wanted = list(least if beyond < low else greatest)
-        assert shown(sim, rig.session.params, name) == wanted
-        assert rig.browser.control(name).value == pytest.approx(wanted)
+    kind = NUMERIC[sim.slug][name]
+    for beyond, bound in ((low - 1000, low), (high + 1000, high)):
+        if isinstance(kind, Slider):
+            rig.browser.move(name, beyond)
+            rig.settle()
+            assert getattr(rig.session.params, name) == bound
+            assert inputs(rig, name) == bound
+        else:
+            rig.browser.move(name, [beyond for _ in start] if isinstance(kind, Vector) else beyond)
+            rig.settle()
+            assert getattr(rig.session.params, name) == start
+            said = [message for message in rig.browser.told if message["type"] == "error"][-1]
+            assert said["control"] == name
+            assert "number from" in said["message"]
+            rig.browser.told.clear()
 
 
 @each_sim
@@ -360,10 +409,12 @@ def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnyS
     for _, params in [(n, p) for s, n, p in FEW if s is sim]:
         rig.show(params)
         for name in [n for s, n in field_cases() if s is sim]:
-            control = rig.browser.control(name)
-            assert control.value == pytest.approx(shown(sim, params, name)), name
-            if control.kind == "GuiSliderMessage":
-                assert control.bounds == sim.offers(params, rig.session.solution).bounds(name)
+            wanted = shown(params, name)
+            assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None), name
+            if isinstance(params.kinds[name], Slider):
+                control = next(xml(rig.column.parts[f"control:{name}"]).iter("input"))
+                bounds = sim.offers(params, rig.session.solution).bounds(name)
+                assert (float(control.get("min", "")), float(control.get("max", ""))) == bounds
 
 
 @each_list
@@ -371,27 +422,27 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
     rig = rigs[sim.slug]
     kind = sim.params.kinds[name]
     assert isinstance(kind, LISTS)
-    labels: Any = kind.labels if isinstance(kind, Letters) else None
+    letters = list(kind.labels) if isinstance(kind, Letters) else None
     for params in [p for s, _, p in FEW if s is sim]:
         rig.show(params)
-        model, start = rig.browser.model, getattr(params, name)
-        for k in range(kind.most):
-            control = model.control(params.entry_label(name, k))
-            assert control.props.get("visible", True) == (k < len(start))
-            if k < len(start):
-                assert control.value == pytest.approx(labels[start[k]] if labels else start[k])
+        start = getattr(params, name)
+        shown = [
+            e.get("data-control") for e in xml(rig.column.parts[f"control:{name}"]).iter() if e.get("data-control")
+        ]
+        assert shown == [f"{name}.{k}" for k in range(len(sim.offers(params).entries(name)))]
+        assert [rig.column.values[f"{name}.{k}"] for k in range(len(start))] == [*start]
     if not start:
         return
     last = len(start) - 1
-    for aim in labels or params.bounds(name):
-        rig.browser.move(params.entry_label(name, last), labels[aim] if labels else aim)
+    for aim in letters or params.bounds(name):
+        rig.browser.move(f"{name}.{last}", aim)
         rig.settle()
-        assert getattr(rig.session.params, name) == (start[:last] + (aim if labels else (aim,)))
-    if not labels:
-        rig.browser.move(params.entry_label(name, last), params.bounds(name)[1] + 1000)
+        assert getattr(rig.session.params, name) == (start[:last] + (aim if letters else (aim,)))
+    if not letters:
+        rig.browser.move(f"{name}.{last}", params.bounds(name)[1] + 1000)
         rig.settle()
         assert getattr(rig.session.params, name)[last] == params.bounds(name)[1]
-        assert model.control(params.entry_label(name, last)).value == params.bounds(name)[1]
+        assert rig.column.values[f"{name}.{last}"] == params.bounds(name)[1]
 
 
 @each_sim
@@ -416,7 +467,7 @@ def test_reset_returns_to_the_first_state(sim: AnySim) -> None:
         with Rig(sim, params) as rig:
             before = rig.model.snapshot()
             rig.show(sim.params().changed(next(iter(sim.states.values()))))
-            rig.browser.press("Reset")
+            rig.browser.press("reset")
             rig.settle()
             assert rig.session.params == params
             assert not differences(before, rig.model.snapshot(), within=1e-12)
@@ -441,14 +492,16 @@ def test_what_is_dragged_can_be_typed(sim: AnySim) -> None:
             assert typed.handle in sim.handles
             place = typed.place(rig.session.params, rig.session.solution)
             assert place is not None
-            label = f"{typed.title} ({typed.unit})"
-            assert rig.browser.model.control(label).value == pytest.approx(place)
+            assert rig.column.vector(typed.handle) == pytest.approx([*place])
             aim = [v + step for v, step in zip(place, (-0.05, -0.1, 0.05), strict=True)]
-            rig.browser.move(label, aim)
+            rig.browser.move(typed.handle, aim)
             rig.settle()
             place = typed.place(rig.session.params, rig.session.solution)
             assert place == pytest.approx(aim, abs=1e-6)
-            assert rig.browser.model.control(label).value == pytest.approx(aim, abs=1e-6)
+            assert rig.column.vector(typed.handle) == pytest.approx(aim, abs=1e-6)
+            rig.browser.move(f"{typed.handle}.2", aim[2] - 0.02)
+            rig.settle()
+            assert rig.column.values[f"{typed.handle}.2"] == pytest.approx(aim[2] - 0.02, abs=1e-6)
 
 
 @each_state
@@ -459,7 +512,6 @@ def test_what_can_be_typed_is_shown_where_it_exists(
     rig.show(params)
     for typed in sim.typed:
         place = typed.place(params, rig.session.solution)
-        control = rig.browser.model.control(f"{typed.title} ({typed.unit})")
-        assert control.props["visible"] == (place is not None)
+        assert bool(rig.column.parts[f"control:{typed.handle}"]) == (place is not None)
         if place is not None:
-            assert control.value == pytest.approx(place)
+            assert rig.column.vector(typed.handle) == pytest.approx([*place])

@@ -296,7 +296,7 @@ def test_whether_there_is_a_point_is_said_in_the_scene_and_beside_it(stereo: Rig
     solution = TRIANGULATION.solve(params)
     warned = solution.point is None or solution.vague
     assert stereo.model.visible("/warning") == warned
-    assert ("s3-warn" in stereo.model.html("s3-readouts")) == warned
+    assert ("s3-warn" in stereo.column.html("read")) == warned
 
 
 def test_dragging_the_point_moves_both_pixels_to_its_projections(stereo: Rig) -> None:

@@ -304,7 +304,7 @@ def check_ghost(rig: Rig, p: ChainParams) -> None:
 def test_trace_is_drawn_through_the_end_effector_and_follows_the_joint_that_moves(rig: Rig) -> None:
     rig.show(START)
     assert not rig.model.visible("/trace")
-    rig.browser.move("Joint 2 angle", 65.5)
+    rig.browser.move("angles.1", 65.5)
     rig.settle()
     p = state(rig)
     assert (p.angles, p.trace) == ((30, 65.5, -30), 2)
@@ -320,29 +320,29 @@ def test_trace_is_drawn_through_the_end_effector_and_follows_the_joint_that_move
 def test_adding_and_removing_links_keeps_the_other_values() -> None:
     with Rig(SIM, START.changed({"show": "composed", "swap": 2, "trace": 3})) as rig:
         for n in range(4, 9):
-            rig.browser.press("Add link")
+            rig.browser.press("add-link")
             rig.settle()
             p = state(rig)
             assert p.count == len(p.angles) == len(p.lengths) == n
             assert (p.angles[:3], p.lengths[:3], p.axes[:3]) == (START.angles, START.lengths, START.axes)
             assert (p.show, p.swap, p.trace) == ("composed", 2, 3)
-            assert rig.browser.control(f"Joint {n} angle").props["visible"]
-        rig.browser.press("Add link")
+            assert f'data-slide="angles.{n - 1}"' in rig.column.parts["control:angles"]
+        rig.browser.press("add-link")
         rig.settle()
         assert state(rig) == p, "eight links are the most"
-        rig.browser.move("Joint 8 angle", 12.5)
-        rig.browser.move("Link 8 length", 0.77)
-        rig.browser.move("Joint 8 axis", "x: twist")
+        rig.browser.move("angles.7", 12.5)
+        rig.browser.move("lengths.7", 0.77)
+        rig.browser.move("axes.7", "x")
         rig.settle()
         p = state(rig)
         assert (p.angles[7], p.lengths[7], p.axes[7]) == (12.5, 0.77, "x")
         for n in range(7, 0, -1):
-            rig.browser.press("Remove link")
+            rig.browser.press("remove-link")
             rig.settle()
             q = state(rig)
             assert (q.angles, q.lengths, q.axes) == (p.angles[:n], p.lengths[:n], p.axes[:n])
             assert q.swap == (2 if n > 2 else None)
-        rig.browser.press("Remove link")
+        rig.browser.press("remove-link")
         rig.settle()
         assert state(rig).count == 1
 
@@ -397,9 +397,9 @@ def test_place_out_of_reach_is_said_and_the_arm_points_to_it(rig: Rig) -> None:
     assert s.pull_distance == pytest.approx(5.0 - 2.3, abs=1e-3)
     np.testing.assert_allclose(np.array(s.end) / np.linalg.norm(s.end), (0.8, 0.6, 0), atol=1e-3)
     assert any("out of reach" in text for text in rig.model.labels().values())
-    assert "Out of reach" in words(rig.model.html("s3-readouts"))
+    assert "Out of reach" in words(rig.column.html("read"))
     np.testing.assert_allclose(rig.model.points("/pull").reshape(-1, 3)[0], s.end, atol=1e-6)
-    rig.browser.move("Joint 1 angle", 0.0)
+    rig.browser.move("angles.0", 0.0)
     rig.settle()
     assert state(rig).pull is None, "the hand has let go"
 

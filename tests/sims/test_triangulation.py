@@ -379,9 +379,8 @@ def test_buttons_lead_to_the_next_sample_and_switch_noise() -> None:
 
 def test_the_point_can_be_typed_and_hides_where_there_is_none() -> None:
     with Rig(SIM) as rig:
-        control = rig.browser.control("3D point")
-        assert control.value == pytest.approx((0.3, 4.0, 1.2))
-        rig.browser.move("3D point", [0.1, 3.0, 1.3])
+        assert rig.column.vector("/point") == pytest.approx([0.3, 4.0, 1.2])
+        rig.browser.move("/point", [0.1, 3.0, 1.3])
         rig.settle()
         left, right = projections(START, (0.1, 3.0, 1.3))
         state = rig.session.params
@@ -389,9 +388,9 @@ def test_the_point_can_be_typed_and_hides_where_there_is_none() -> None:
         assert state.left_uv == pytest.approx(tuple(left))
         assert state.right_uv == pytest.approx(tuple(right))
         rig.show(START.changed(SIM.states["parallel rays"]))
-        assert not rig.browser.control("3D point").props["visible"]
+        assert not rig.column.parts["control:/point"]
         rig.show(START)
-        assert rig.browser.control("3D point").props["visible"]
+        assert rig.column.parts["control:/point"]
 
 
 # ---- pictures and close-up
@@ -436,7 +435,7 @@ def rig() -> Iterator[Rig]:
 @pytest.mark.parametrize("p", [START, MISS, NOISY], ids=["defaults", "miss", "noise"])
 def test_image_points_are_linked_with_their_lines_rays_and_rows(rig: Rig, p: TriangulationParams) -> None:
     rig.show(p)
-    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    pictures, tables = rig.column.html("pane"), rig.column.html("read")
     rows = {str(e.get("data-link")): [str(td.text) for td in e.iter("td")] for e in xml(tables).iter("tr")}
     for side, measured in zip(("left", "right"), mathematics.measured(p), strict=True):
         lines = 3 if p.noise else 1  # a cross is two
@@ -450,7 +449,7 @@ def test_points_of_all_methods_are_linked_with_where_they_are_seen_and_their_row
     rig: Rig, p: TriangulationParams
 ) -> None:
     rig.show(p)
-    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    pictures, tables = rig.column.html("pane"), rig.column.html("read")
     solution = solve(p)
     for name, result in solution.by_method.items():
         chosen = name == p.method
@@ -519,7 +518,7 @@ def test_a_method_is_selected_by_a_click_on_its_point_and_marked_everywhere(rig:
     rig.browser.click("/closeup/midpoint/ghost")
     rig.settle()
     assert rig.session.params == MISS.changed({"method": "midpoint"})
-    pictures, tables = rig.model.html("s3-panes"), rig.model.html("s3-readouts")
+    pictures, tables = rig.column.html("pane"), rig.column.html("read")
     assert linked(pictures, "midpoint") == ["g s3-point"] * 2
     assert linked(tables, "midpoint") == ["tr s3-selected"]
     assert tables.count("s3-selected") == 1

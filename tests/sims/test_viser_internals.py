@@ -34,11 +34,9 @@ from sims.kit.viser_internals import (
     PROTOCOL,
     ViserHost,
     Wire,
-    control_id,
     send_pose,
     set_pose,
     set_property,
-    set_value,
     set_visible,
 )
 from tests.server import Rig
@@ -121,7 +119,6 @@ def test_type_hints_of_a_handle_are_those_that_viser_would_work_out(rig: Rig) ->
         (_messages.SetOrientationMessage, ["name", "wxyz", "owner"]),
         (_messages.SetPositionMessage, ["name", "position", "owner"]),
         (_messages.SetSceneNodeVisibilityMessage, ["name", "visible", "owner"]),
-        (_messages.GuiUpdateMessage, ["uuid", "updates"]),
     ],
 )
 def test_messages_have_the_fields_that_we_fill(message: Any, fields: list[str]) -> None:
@@ -265,24 +262,6 @@ def test_property_arrives_as_it_is(rig: Rig) -> None:
     np.testing.assert_array_equal(rig.model.points("/segments"), moved)
     np.testing.assert_array_equal(lines.points, moved)
     rig.host.call(lines.remove)
-
-
-def test_value_is_shown_without_calling_back(rig: Rig) -> None:
-    called: list[float] = []
-    gui = rig.browser.client.gui
-    slider = rig.host.call(lambda: gui.add_slider("Probe", 0, 10, 1, 3))
-
-    @slider.on_update
-    async def _(_: Any) -> None:
-        called.append(slider.value)
-
-    assert messages_of(rig, lambda: set_value(slider, 7)) == 1
-    assert messages_of(rig, lambda: set_value(slider, 7)) == 0
-    assert rig.model.control("Probe").value == 7
-    assert slider.value == 7
-    assert rig.model.control("Probe").uuid == control_id(slider)
-    assert not called
-    rig.host.call(slider.remove)
 
 
 def test_connection_is_forgotten_when_it_ends(rig: Rig) -> None:

@@ -17,7 +17,7 @@ class Kind(ABC):
 
     title: str
     group: str = ""
-    """Folder of the controls in which it stands; the few that matter most stand in none."""
+    """Fold of the controls in which it stands; the few that matter most stand in none."""
     hidden: bool = False
     control: ClassVar[str]
     """What sets it on the page, as the JSON schema calls it."""

@@ -15,6 +15,8 @@ from sims.kit.scene.pieces import Dash, arc_pieces, dashes
 from sims.kit.types import Segment, Vector
 from sims.kit.viser_internals import send_pose, set_pose, set_property, set_visible
 
+STRESS = 2.0
+"""How much thicker lines and arrows are while they are highlighted."""
 HEAD_RADIUS, HEAD_LENGTH = 2.6, 7.0
 """Size of an arrow's head, in radii of its shaft."""
 
@@ -50,6 +52,9 @@ class Node:
     def scale(self, factors: float | tuple[float, float, float]) -> None:
         """Stretch it (not what hangs on it): by one factor, or by one along each of its own axes."""
         self._assign("scale", factors)
+
+    def stress(self, on: bool) -> None:
+        """Make it stand out while what it is linked with is pointed at."""
 
     def _assign(self, name: str, value: float | str | tuple[float, ...]) -> None:
         """Send a property that isn't an array."""
@@ -122,6 +127,10 @@ class Lines(Node):
         self._rgb = np.array(rgb, np.uint8)
         self._dash = dash
         self._count = len(handle.points)
+        self._width = float(handle.thickness)
+
+    def stress(self, on: bool) -> None:
+        self._assign("thickness", self._width * STRESS if on else self._width)
 
     def path(self, points: npt.ArrayLike) -> None:
         """Draw a polyline through points (n, 3)."""
@@ -156,6 +165,13 @@ class Lines(Node):
 class Strokes(Node):
     """Straight pieces, each in a colour of its own, that move at once."""
 
+    def __init__(self, handle: Any) -> None:
+        super().__init__(handle)
+        self._width = float(handle.thickness)
+
+    def stress(self, on: bool) -> None:
+        self._assign("thickness", self._width * STRESS if on else self._width)
+
     def draw(self, pieces: Sequence[Sequence[Sequence[float]]] | npt.NDArray[np.float64]) -> None:
         """Two ends for each piece (n, 2, 3)."""
         if self.differs("pieces", pieces):
@@ -179,6 +195,11 @@ class Label(Node):
 class Arrows(Node):
     """One arrow or several, whose ends move at once."""
 
+    def __init__(self, handle: Any) -> None:
+        super().__init__(handle)
+        self._radius = float(handle.shaft_radius)
+        self._stress = 1.0
+
     def between(self, ends: Segment | None) -> None:
         """Place the only one, from tail to tip; hide it where there is none."""
         self.show(ends is not None)
@@ -193,5 +214,14 @@ class Arrows(Node):
 
     def thickness(self, radius: float) -> None:
         """Radius of their shafts in metres; their heads go with it."""
+        self._radius = radius
+        self._thicken()
+
+    def stress(self, on: bool) -> None:
+        self._stress = STRESS if on else 1.0
+        self._thicken()
+
+    def _thicken(self) -> None:
+        radius = self._radius * self._stress
         for name, times in (("shaft_radius", 1.0), ("head_radius", HEAD_RADIUS), ("head_length", HEAD_LENGTH)):
             self._assign(name, times * radius)

@@ -6,7 +6,6 @@ constant size on the screen. A node whose points aren't given has none until it 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -36,19 +35,17 @@ class Stage:
         self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Place], None],
         pick: Callable[[str], None] = lambda name: None,
         click: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
-        width: float = math.inf, phone: bool = False,
+        home: Callable[[Vector, Vector, float], None] = lambda position, look_at, radius: None,
     ) -> None:  # fmt: skip
         self.client = client
-        self._width = width
-        """Pixels that panels leave to the scene, once they are there."""
-        self._phone = phone
-        self.looked: tuple[Vector, Vector, float] | None = None
-        """What `look` was told last."""
         self.scene = client.scene
         self.palette = palette
         self._drag = drag
         self._pick = pick
         self._click = click
+        self._home = home
+        self._linked: dict[str, list[Node]] = {}
+        self._highlighted = ""
 
     def ground(self, size: float = 8.0, height: float = 0.0, cell: float = 0.5) -> Node:
         """The light floor grid, and soft light from above."""
@@ -70,9 +67,22 @@ class Stage:
             self._click(name, (*event.ray_origin, *event.ray_direction))
 
     def look(self, position: Vector, look_at: Vector, radius: float) -> None:
-        """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
-        self.looked = position, look_at, radius
-        view.look(self.client.camera, position, look_at, radius, width=self._width, phone=self._phone)
+        """Look from a place at another, or from so far behind it that a sphere of `radius` fits; so does Home view."""
+        self._home(position, look_at, radius)
+        view.look(self.client.camera, position, look_at, radius)
+
+    def linked(self, name: str, *nodes: Node) -> None:
+        """Highlight nodes together with all else that is linked under a name: a control, entries of a matrix."""
+        self._linked.setdefault(name, []).extend(nodes)
+
+    def highlight(self, name: str) -> None:
+        """Highlight what is linked under a name, and nothing else."""
+        if name != self._highlighted:
+            for node in self._linked.get(self._highlighted, ()):
+                node.stress(False)
+        for node in self._linked.get(name, ()):
+            node.stress(True)
+        self._highlighted = name
 
     def group(self, name: str) -> Node:
         """An invisible frame that others hang on."""

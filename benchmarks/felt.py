@@ -1,0 +1,156 @@
+"""How quick a sim feels: from a hand on a real control in headless Chromium to the numbers and to the frame.
+
+Each input is timed from its own event: until a number beside the scene has changed, and until a scene that was drawn
+after it is on the screen (two animation frames later). Beside them stand what the page's main thread does for one
+input, and how often it lays the page out.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+from playwright.sync_api import Browser, CDPSession, Locator, Page, sync_playwright
+
+from benchmarks.servers import SLUG, Sim3
+from sims import SIMS
+from tests.browser import launch_options
+
+# Notes the time of each input, and of the first number and the first drawing after it.
+WATCH = """
+(() => {
+  const felt = (window.felt = { at: 0, numbers: 0, frame: 0 });
+  for (const kind of ["keydown", "pointermove", "touchmove"]) addEventListener(kind, (event) => {
+    if (felt.armed) Object.assign(felt, { armed: false, at: event.timeStamp, numbers: 0, frame: 0 });
+  }, { capture: true, passive: true });
+  const words = () => document.querySelector(".s3-column")?.textContent ?? "";
+  let last = "";
+  new MutationObserver(() => {
+    if (!felt.at || felt.numbers) last = words();
+    else if (words() !== last) felt.numbers = performance.now();
+  }).observe(document, { subtree: true, childList: true, characterData: true });
+  const { prototype } = WebGL2RenderingContext;
+  for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
+    const draw = prototype[name];
+    prototype[name] = function (...given) {
+      if (felt.at && !felt.frame) {
+        felt.frame = -1;
+        requestAnimationFrame(() => requestAnimationFrame((now) => (felt.frame = performance.now())));
+      }
+      return draw.apply(this, given);
+    };
+  }
+})();
+"""
+SIZE: Any = {"width": 1280, "height": 800}
+REST = 700
+"""Milliseconds between two inputs, in which all comes to rest."""
+PATIENCE = 60_000
+
+
+class Hand:
+    """One page, and what is moved on it."""
+
+    def __init__(self, page: Page, address: str) -> None:
+        self.page = page
+        page.add_init_script(WATCH)
+        page.goto(address, wait_until="commit", timeout=PATIENCE)
+        page.wait_for_function("window.sim3?.live", timeout=PATIENCE, polling=100)
+        page.wait_for_timeout(2500)
+        self.slider = page.locator("[data-slide]").first
+        self._cdp: CDPSession = page.context.new_cdp_session(page)
+        self._cdp.send("Performance.enable")
+
+    def measure(self, inputs: Iterator[Callable[[], object]], count: int) -> dict[str, float]:
+        """Medians of what `count` inputs took, in milliseconds; the first doesn't count."""
+        numbers, frames = [], []
+        next(inputs)()
+        self.page.wait_for_timeout(REST)
+        before = self._metrics()
+        for _ in range(count):
+            self.page.evaluate("felt.at = 0, felt.numbers = 0, felt.armed = true")
+            next(inputs)()
+            self.page.wait_for_timeout(REST)
+            at, number, frame = self.page.evaluate("[felt.at, felt.numbers, felt.frame]")
+            if at and number and frame > 0:
+                numbers.append(number - at)
+                frames.append(frame - at)
+        after = self._metrics()
+        return {
+            "numbers": statistics.median(numbers) if numbers else float("nan"),
+            "frame": statistics.median(frames) if frames else float("nan"),
+            "main": 1e3 * (after["TaskDuration"] - before["TaskDuration"]) / count,
+            "layouts": (after["LayoutCount"] - before["LayoutCount"]) / count,
+        }
+
+    def _metrics(self) -> dict[str, float]:
+        return {each["name"]: each["value"] for each in self._cdp.send("Performance.getMetrics")["metrics"]}
+
+    def keys(self) -> Iterator[Callable[[], object]]:
+        """An arrow key on the first slider, there and back."""
+        self.slider.focus()
+        while True:
+            yield lambda: self.page.keyboard.press("ArrowRight")
+            yield lambda: self.page.keyboard.press("ArrowLeft")
+
+    def mouse(self, held: Locator) -> Iterator[Callable[[], object]]:
+        """The mouse holds something and moves it a little."""
+        at = self._middle(held)
+        self.page.mouse.move(*at)
+        self.page.mouse.down()
+        while True:
+            for dx in (9, 18, 9, 0):
+                yield partial(self.page.mouse.move, at[0] + dx, at[1])
+
+    def finger(self, held: Locator) -> Iterator[Callable[[], object]]:
+        """A finger does the same."""
+        x, y = self._middle(held)
+        self._touch("touchStart", x, y)
+        while True:
+            for dx in (9, 18, 27, 18):
+                yield partial(self._touch, "touchMove", x + dx, y)
+
+    def _touch(self, kind: str, x: float, y: float) -> None:
+        self._cdp.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
+
+    def _middle(self, held: Locator) -> tuple[float, float]:
+        held.scroll_into_view_if_needed()
+        box = held.bounding_box()
+        assert box is not None
+        share = held.evaluate("n => n.dataset.slide ? (n.value - n.min) / (n.max - n.min) : 0.5")
+        inset = 8.0 if held.evaluate("n => !!n.dataset.slide") else 0.0
+        return box["x"] + inset + (box["width"] - 2 * inset) * share, box["y"] + box["height"] / 2
+
+
+def measure(count: int) -> dict[str, dict[str, float]]:
+    """For each sim and way of moving something, what it took."""
+    found: dict[str, dict[str, float]] = {}
+    with Sim3() as sim3, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(**launch_options())
+        for sim in SIMS:
+            address = f"http://127.0.0.1:{sim3.port}/sims/{sim.slug}/embed"
+            ways = ["key"]
+            if sim.slug == SLUG:
+                ways += ["mouse", "finger"]
+            if sim.panes is not None and any(not name.startswith("/") for name in sim.handles):
+                ways.append("picture")
+            for way in ways:
+                found[f"{sim.slug}, {way}"] = _one(browser, address, way, count)
+        browser.close()
+    return found
+
+
+def _one(browser: Browser, address: str, way: str, count: int) -> dict[str, float]:
+    context = browser.new_context(viewport=SIZE, has_touch=way == "finger")
+    try:
+        hand = Hand(context.new_page(), address)
+        picture = hand.page.locator("[data-handle] .s3-core").first
+        inputs: dict[str, Callable[[], Iterator[Callable[[], object]]]] = {
+            "key": hand.keys, "mouse": lambda: hand.mouse(hand.slider), "finger": lambda: hand.finger(hand.slider),
+            "picture": lambda: hand.mouse(picture),
+        }  # fmt: skip
+        return hand.measure(inputs[way](), count)
+    finally:
+        context.close()

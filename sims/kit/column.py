@@ -1,0 +1,182 @@
+"""What a sim's page shows beside the scene: words, numbers, pictures and controls, as HTML in parts.
+
+The page begins with all of it (`Column.html`). Then it is told of the parts that differ from what they were, and of
+what each input shows: `Column.parts` and `Column.values` of a state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from html import escape
+from typing import Any
+
+from sims.kit import controls, pane, readout
+from sims.kit.offers import Offers
+from sims.kit.params import Params
+from sims.kit.sim import Action, Library, Sim, Typed
+
+PANES = "panes"
+Parts = dict[str, str]
+
+
+class Column:
+    """Makes the parts of a sim's states, on a server with a library of files where the sim has some."""
+
+    def __init__(self, sim: Sim[Any, Any], library: tuple[Library, ...] = ()) -> None:
+        self.sim = sim
+        self._library = library
+        self._form: Any = None
+        self._controls: Parts = {}
+
+    def values(self, params: Params, solution: Any) -> dict[str, controls.Shown]:
+        """What each input shows, by its name."""
+        found = controls.values(self._offers(params, solution))
+        for typed in self.sim.typed if solution is not None else ():
+            place = typed.place(params, solution) or (None, None, None)
+            found |= {f"{typed.handle}.{k}": value for k, value in enumerate(place)}
+        return found
+
+    def parts(self, params: Params, solution: Any) -> Parts:
+        """The HTML of each part. Without a solution yet: the controls alone."""
+        found = dict(self._controls_of(self._offers(params, solution)))
+        if solution is None:
+            return found
+        sim = self.sim
+        found["caption"] = escape(sim.caption(params, solution))
+        read = readout.folded(sim.readouts(params, solution))
+        for title in ("", *sim.folds):
+            found[f"read:{title}"] = readout.render(read.get(title, ()))
+        for typed in sim.typed:
+            found[f"control:{typed.handle}"] = "" if typed.place(params, solution) is None else placed(typed)
+        if sim.files is not None:
+            preview = sim.files.preview(params, *self._library)
+            found["preview"] = "" if preview is None else readout.render([preview])
+        if sim.panes is not None:
+            panes = sim.panes(params, solution)
+            found[PANES] = "".join(pane.figure(each) for each in panes)
+            found |= {f"pane:{each.name}": pane.content(each) for each in panes}
+        return found
+
+    def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
+        """The whole column; `only`: of the controls, those of these parameters and actions."""
+        offers = self._offers(params, solution)
+        filled = {f"control:{name}": controls.html(offers, name) for name in self._known}
+        return "".join(self._page(self.parts(params, solution) | filled, only))
+
+    def _offers(self, params: Params, solution: Any) -> Offers[Any]:
+        return self.sim.offers(params, solution, *self._library)
+
+    def _controls_of(self, offers: Offers[Any]) -> Parts:
+        """The controls without what they show, made anew where what they offer may have changed."""
+        form = offers.form()
+        if form != self._form:
+            self._form = form
+            self._controls = {f"control:{name}": controls.html(offers, name, filled=False) for name in self._known}
+        return self._controls
+
+    def _page(self, parts: Parts, only: Collection[str] | None) -> Iterator[str]:
+        def part(name: str, tag: str = "div", kind: str = "") -> str:
+            inside = parts.get(name, "")
+            if name == PANES:  # its frames are filled
+                for key, content in parts.items():
+                    if key.startswith("pane:"):
+                        inside = inside.replace(
+                            f'data-part="{escape(key)}">', f'data-part="{escape(key)}">{content}', 1
+                        )
+            return f'<{tag} class="{kind}" data-part="{escape(name)}">{inside}</{tag}>'
+
+        def wanted(action: Action) -> bool:
+            return not action.group if only is None else action.name in only
+
+        sim = self.sim
+        yield part("caption", "p", "s3-caption")
+        yield part("read:", kind="s3-key")
+        if sim.panes is not None:
+            yield part(PANES, kind="s3-panes")
+        yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
+        yield from (
+            part(f"control:{name}") for name in (self._names("") if only is None else only) if name in self._known
+        )
+        yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
+        yield self._actions(wanted)
+        if only is None:
+            yield from (self._fold(title, part) for title in self._titles())
+        yield f"</fieldset>{toolbar(sim.downloads)}"
+
+    def _fold(self, title: str, part: Callable[..., str]) -> str:
+        files = self.sim.files
+        inside = [part(f"read:{title}", kind="s3-read")] if title in self.sim.folds else []
+        for name in self._names(title):
+            if files is not None and name == files.previewed:
+                inside.append(part("preview", kind="s3-read"))
+            inside.append(part(f"control:{name}"))
+        if files is not None and title == files.group:
+            inside.append(upload(files.endings))
+        pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
+        inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
+        return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+
+    def _actions(self, wanted: Callable[[Action], bool]) -> str:
+        shown = [action for action in self.sim.actions if wanted(action)]
+        inside = "".join(button(action, primary=not k) for k, action in enumerate(shown))
+        return (
+            f'<div class="s3-actions">{inside}'
+            '<button type="button" data-act="reset" title="Back to the state and the view of the link that you opened">'
+            'Reset</button><button type="button" data-s3="home" title="Back to the sim’s own view of the scene">'
+            "Home view</button></div>"
+        )
+
+    @property
+    def _known(self) -> list[str]:
+        """Parameters that have a control."""
+        return [name for name, kind in self.sim.params.kinds.items() if not kind.hidden]
+
+    def _names(self, group: str) -> list[str]:
+        return [name for name in self._known if self.sim.params.kinds[name].group == group]
+
+    def _titles(self) -> list[str]:
+        groups = [self.sim.params.kinds[name].group for name in self._known]
+        groups += [action.group for action in self.sim.actions]
+        return [title for title in dict.fromkeys((*self.sim.folds, *groups)) if title]
+
+
+def button(action: Action, *, primary: bool = False) -> str:
+    """What starts an action."""
+    kind = ' class="s3-primary"' if primary else ""
+    return (
+        f'<button type="button"{kind} data-act="{escape(action.name)}" title="{escape(action.hint)}">'
+        f"{escape(action.label)}</button>"
+    )
+
+
+def placed(typed: Typed[Any, Any]) -> str:
+    """Three boxes for what dragging a node of the scene sets."""
+    inside = controls.vector(typed.handle, typed.title, "xyz", (None, None, None), typed.unit, typed.step)
+    return controls.control(typed.handle, typed.title, inside, typed.description, kind="s3-line")
+
+
+def toolbar(downloads: Iterable[str] = ()) -> str:
+    """The buttons that every sim has, and those for what can be had as a file."""
+    files = "".join(
+        f'<button type="button" data-s3="download" value="{escape(name)}">Download {escape(name)}</button>'
+        for name in downloads
+    )
+    return (
+        '<div class="s3-toolbar">'
+        '<button type="button" data-s3="share">Share link</button>'
+        '<button type="button" data-s3="picture">Save picture</button>'
+        '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
+        f"{files}</div>"
+    )
+
+
+def upload(endings: Sequence[str]) -> str:
+    """Where a file is chosen to be uploaded; the page sends it and says how far it is."""
+    return (
+        '<div class="s3-upload"><label>Bring a file<input type="file" data-s3-file=""'
+        f' accept="{",".join(endings)}"/>'
+        '</label><progress max="1" hidden="" aria-label="Upload"></progress>'
+        '<button type="button" hidden="" data-s3="give-up">Cancel</button>'
+        f'<p data-s3-file-status="" role="status">{", ".join(e[1:].upper() for e in endings)}; it stays on this server'
+        " while the sim is open.</p></div>"
+    )

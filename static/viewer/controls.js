@@ -1,0 +1,239 @@
+// The controls: what is moved, typed and chosen goes to the server; what it answers is shown.
+import { column, sim } from "./page.js";
+
+const PAUSE = 900; // milliseconds without a key after which what was typed is finished
+
+export class Controls {
+  constructor(channel, pace) {
+    this.channel = channel;
+    this.pace = pace;
+    this.known = {}; // what the server says that each input shows
+    this.typing = 0;
+    this.held = null; // the slider under a hand
+    column.addEventListener("input", (event) => this.input(event.target));
+    column.addEventListener("change", (event) => this.change(event.target));
+    column.addEventListener("keydown", (event) => this.key(event));
+    column.addEventListener("mousedown", (event) => selectWhole(event));
+    column.addEventListener("focusin", ({ target }) => target.dataset.box && target.type === "text" && this.begin(target));
+    column.addEventListener("focusout", ({ target }) => target.dataset.box && this.finish(target));
+    column.addEventListener("dblclick", ({ target }) => target.dataset.default && this.slide(target, Number(target.dataset.default)));
+    column.addEventListener("pointerdown", ({ target }) => (this.held = target.dataset.slide ? target : null));
+    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => this.letGo());
+    column.addEventListener("click", (event) => this.click(event.target));
+    column.addEventListener("paste", (event) => this.paste(event));
+  }
+
+  // ---- sliders
+
+  input(input) {
+    if (input.dataset.slide) this.slide(input, stepped(input));
+    else if (input.dataset.box) {
+      clearTimeout(this.typing);
+      this.typing = setTimeout(() => this.finish(input), PAUSE);
+    }
+  }
+
+  slide(input, value) {
+    const within = Math.min(Math.max(value, Number(input.min)), Number(input.max));
+    input.value = within;
+    const { slide: name } = input.dataset;
+    const box = inputs("box", name)[0];
+    if (box && box !== document.activeElement) box.value = text(within);
+    tellValue(input, within);
+    this.pace.put(name, { type: "slide", name, value: within });
+  }
+
+  letGo() {
+    if (!this.held) return;
+    this.held = null;
+    if (this.pace.idle) this.settle();
+  }
+
+  // ---- boxes, lists, switches
+
+  begin(box) {
+    box.dataset.before = box.value;
+    box.select();
+  }
+
+  // What was typed is taken as it stands; what can't be meant stays in the box, with the reason below it.
+  finish(box) {
+    clearTimeout(this.typing);
+    if (box.value === box.dataset.before) return;
+    box.dataset.before = box.value;
+    const whole = box.closest(".s3-vector");
+    const several = whole && /[\d.)]\s*[;,\s]\s*[-+−(.\d]+.*[;,\s]/.test(box.value.trim());
+    this.enter(several ? whole.dataset.vector : box.dataset.box, box.value);
+  }
+
+  enter(name, value) {
+    right(control(name));
+    this.channel.send({ type: "enter", name, text: value });
+  }
+
+  change(input) {
+    if (input.dataset.choice) this.enter(input.dataset.choice, input.value);
+    else if (input.dataset.switch) this.enter(input.dataset.switch, input.checked ? "1" : "0");
+  }
+
+  paste(event) {
+    const box = event.target;
+    if (!box.dataset?.box) return;
+    setTimeout(() => this.finish(box));
+  }
+
+  nudge(box, steps) {
+    const before = Number.parseFloat(box.value.replace("−", "-").replace(",", "."));
+    if (Number.isNaN(before)) return;
+    const step = Number(box.dataset.step);
+    box.value = text(Number((before + steps * step).toPrecision(12)));
+    this.finish(box);
+  }
+
+  // ---- keys and presses
+
+  key(event) {
+    const { target } = event;
+    if (target.dataset.slide) this.slideKey(event);
+    else if (target.dataset.box) this.boxKey(event);
+  }
+
+  slideKey(event) {
+    const { target, key } = event;
+    const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[key];
+    const end = { Home: target.min, End: target.max }[key];
+    if ((by === undefined && end === undefined) || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    const step = Number(target.dataset.step);
+    const times = event.shiftKey && Math.abs(by) === 1 ? 10 : 1;
+    this.slide(target, end === undefined ? Number((Number(target.value) + by * times * step).toPrecision(12)) : Number(end));
+  }
+
+  boxKey(event) {
+    const { target, key } = event;
+    if (key === "Enter") {
+      event.preventDefault();
+      this.finish(target);
+      target.select();
+    } else if (key === "Escape") {
+      target.value = target.dataset.before = text(this.known[target.dataset.box]);
+      right(control(target.dataset.box));
+    } else if (key === "ArrowUp" || key === "ArrowDown") {
+      event.preventDefault();
+      this.nudge(target, (key === "ArrowUp" ? 1 : -1) * (event.shiftKey ? 10 : 1));
+    }
+  }
+
+  click(node) {
+    const nudge = node.closest?.("[data-nudge]");
+    const ask = node.closest?.(".s3-ask");
+    const act = node.closest?.("[data-act]");
+    if (nudge) this.nudge(nudge.parentElement.querySelector("input"), Number(nudge.dataset.nudge));
+    else if (ask) toggle(ask);
+    else if (act) this.channel.send({ type: "action", name: act.dataset.act });
+  }
+
+  // ---- what the server says
+
+  show(values) {
+    Object.assign(this.known, values);
+    if (this.pace.idle) this.settle();
+  }
+
+  // Every input shows what is so, but for the one under a hand or being typed into.
+  settle() {
+    for (const [name, value] of Object.entries(this.known)) {
+      for (const input of inputs("slide", name)) {
+        if (input === this.held) continue;
+        if (Number(input.value) !== value) input.value = value;
+        tellValue(input, value);
+      }
+      for (const box of inputs("box", name)) this.fill(box, text(value));
+      for (const input of inputs("switch", name)) input.checked = value;
+      for (const input of inputs("choice", name)) choose(input, value);
+    }
+    if (sim.watching) lock();
+  }
+
+  fill(box, shown) {
+    const editing = box === document.activeElement && box.value !== box.dataset.before;
+    if (editing || box.getAttribute("aria-invalid") || box.value === shown) return;
+    const all = box === document.activeElement;
+    box.value = box.dataset.before = shown;
+    if (all) box.select();
+  }
+
+  // Something was entered that can't be taken: it stays, and the reason stands below.
+  refuse(name, words) {
+    const place = control(name);
+    const line = place?.querySelector(".s3-wrong");
+    if (!line) return false;
+    line.textContent = words;
+    line.hidden = false;
+    for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
+    this.settle();
+    return true;
+  }
+}
+
+// The first click into a box selects what is in it, as the Tab key does.
+function selectWhole(event) {
+  const box = event.target;
+  if (!box.dataset.box || box === document.activeElement) return;
+  event.preventDefault();
+  box.focus();
+}
+
+function inputs(kind, name) {
+  return column.querySelectorAll(`[data-${kind}="${CSS.escape(name)}"]`);
+}
+
+function control(name) {
+  const field = name.split(":")[0];
+  return column.querySelector(`[data-control="${CSS.escape(field)}"]`)
+    ?? column.querySelector(`[data-control="${CSS.escape(field.split(".")[0])}"]`);
+}
+
+function right(place) {
+  const line = place?.querySelector(".s3-wrong");
+  if (line) line.hidden = true;
+  for (const box of place?.querySelectorAll("[aria-invalid]") ?? []) box.removeAttribute("aria-invalid");
+}
+
+// A hand on a slider means round numbers; its ends are exact.
+function stepped(input) {
+  const [value, low, high, step] = [input.value, input.min, input.max, input.dataset.step].map(Number);
+  if (value <= low || value >= high) return value;
+  const near = Math.round(value / step) * step;
+  return Math.min(Math.max(Number(near.toPrecision(12)), low), high);
+}
+
+// A number as a box shows it: exact up to six digits, with a true minus sign. The server spells it in the same way.
+export function text(value) {
+  if (typeof value !== "number") return value ?? "";
+  const size = Math.abs(value);
+  const spelled = size && (size < 1e-4 || size >= 1e6) ? value.toExponential(5).replace(/\.?0+e/, "e") : `${Number(value.toPrecision(6))}`;
+  return spelled.replace("e+", "e").replaceAll("-", "−");
+}
+
+function tellValue(input, value) {
+  const unit = input.closest(".s3-slide")?.querySelector(".s3-unit")?.textContent ?? "";
+  const says = `${text(value)}${unit && unit !== "°" ? " " : ""}${unit}`;
+  if (input.getAttribute("aria-valuetext") !== says) input.setAttribute("aria-valuetext", says);
+}
+
+function choose(input, value) {
+  if (input.type === "radio") input.checked = input.value === String(value ?? "");
+  else if (input.value !== String(value ?? "")) input.value = String(value ?? "");
+}
+
+// Who only watches sees everything and sets nothing.
+function lock() {
+  for (const node of column.querySelectorAll(".s3-controls :is(input, select, [data-act], [data-nudge])")) node.disabled = true;
+}
+
+function toggle(ask) {
+  const why = document.getElementById(ask.getAttribute("aria-controls"));
+  why.hidden = !why.hidden;
+  ask.setAttribute("aria-expanded", String(!why.hidden));
+}

@@ -1,0 +1,28 @@
+// The parts of the column: what the server says differs is put in its place.
+import { column } from "./page.js";
+import { morph } from "./morph.js";
+
+export class Parts {
+  constructor(pace, controls, handles, highlight) {
+    this.pace = pace;
+    this.controls = controls;
+    this.handles = handles;
+    this.highlight = highlight;
+    this.version = -1;
+  }
+
+  show({ version, values, parts }) {
+    this.version = version;
+    // Frames of pictures come before what is in them.
+    for (const [name, html] of Object.entries(parts)) {
+      const node = column.querySelector(`[data-part="${CSS.escape(name)}"]`);
+      if (node) morph(node, html);
+    }
+    column.dataset.version = version;
+    this.pace.answered();
+    this.controls.show(values);
+    if (!Object.keys(parts).length) return;
+    this.handles.drawn();
+    this.highlight.show();
+  }
+}

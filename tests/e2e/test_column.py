@@ -1,0 +1,245 @@
+"""The column beside the scene: typing, sliding, choosing, highlighting and its layout. Its pages have no scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import ViewportSize
+
+from sims import SIMS
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import LIT, Learner, box
+
+Open = Callable[..., Learner]
+PASTE = """([node, text]) => {
+    const clipboardData = new DataTransfer();
+    clipboardData.setData("text/plain", text);
+    node.dispatchEvent(new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true }));
+    node.value = text;
+    node.dispatchEvent(new InputEvent("input", { bubbles: true }));
+}"""
+# What can be pressed, typed into or chosen, and how large it is.
+TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select, input, summary)")]
+    .filter((node) => node.checkVisibility() && node.type !== "radio")
+    .map((node) => [(node.closest("label") ?? node), node])
+    .map(([label, node]) => [label.getBoundingClientRect(), node.outerHTML.slice(0, 90)])
+    .filter(([{ width, height }]) => width && Math.min(width, height) < LEAST)
+    .map(([{ width, height }, html]) => `${width}×${height} ${html}`)"""
+
+
+@pytest.fixture
+def column(classroom: Classroom) -> Open:
+    def opened(path: str, **options: Any) -> Learner:
+        learner = classroom.enter(**options)
+        learner.open_column(path)
+        return learner
+
+    return opened
+
+
+def held(learner: Learner, **expected: Any) -> None:
+    """Wait until the state is as expected, and every box shows it."""
+    learner.until(lambda: {name: learner.params[name] for name in expected} == expected)
+
+
+def shown(learner: Learner, name: str) -> str:
+    return learner.control("textbox", name).input_value()
+
+
+def yaw_is(learner: Learner, yaw: float, seen: str) -> None:
+    learner.until(lambda: learner.params["yaw"] == pytest.approx(yaw) and shown(learner, "yaw") == seen)
+
+
+def test_what_is_typed_key_by_key_is_taken_as_it_is_meant(column: Open) -> None:
+    learner = column("euler-angles/embed")
+    for text, yaw, seen in (
+        ("47.5", 47.5, "47.5"), ("70.5", 70.5, "70.5"), ("-0.6", -0.6, "−0.6"), ("−12,25", -12.25, "−12.25"),
+        ("1e2", 100, "100"), ("π/3", 60, "60"), ("90°", 90, "90"), ("1 rad", 57.29577951308232, "57.2958"),
+    ):  # fmt: skip
+        field = learner.control("textbox", "yaw")
+        field.click(click_count=3)
+        learner.page.keyboard.type(text, delay=2)
+        learner.page.keyboard.press("Enter")
+        yaw_is(learner, yaw, seen)
+        slider = learner.control("slider", "yaw")
+        assert float(slider.evaluate("node => node.value")) == pytest.approx(yaw)
+        assert slider.get_attribute("aria-valuetext") == f"{seen}°"
+
+
+def test_what_is_typed_is_taken_when_it_is_left_or_after_a_pause(column: Open) -> None:
+    learner = column("camera/embed")
+    first = learner.control("textbox", "position.0")
+    first.click()
+    learner.page.keyboard.type("-0.6")
+    learner.page.keyboard.press("Tab")
+    held(learner, position=[-0.6, -4, 1.2])
+    learner.page.keyboard.type("−3,5")
+    held(learner, position=[-0.6, -3.5, 1.2])  # nothing was pressed: it is finished after a pause
+    learner.page.keyboard.press("Escape")
+    assert shown(learner, "position.1") == "−3.5"
+
+
+def test_what_cannot_be_taken_stays_with_the_reason(column: Open) -> None:
+    learner = column("euler-angles/embed?yaw=12")
+    for text in ("400", "ninety"):
+        learner.type("yaw", text)
+        wrong = learner.frame.locator('[data-control="yaw"] .s3-wrong')
+        wrong.wait_for()
+        assert "from −180 to 180°" in (wrong.text_content() or "")
+        assert shown(learner, "yaw") == text
+        assert learner.params["yaw"] == 12
+        assert learner.control("textbox", "yaw").get_attribute("aria-invalid") == "true"
+    learner.control("textbox", "yaw").press("Escape")
+    assert shown(learner, "yaw") == "12"
+    wrong.wait_for(state="hidden")
+    learner.type("yaw", "13")
+    held(learner, yaw=13)
+
+
+def test_three_numbers_are_pasted_at_once(column: Open) -> None:
+    learner = column("camera/embed")
+    field = learner.control("textbox", "position.0")
+    field.click()
+    learner.frame.evaluate(PASTE, [field.element_handle(), "(1.5; -2; 3)"])
+    held(learner, position=[1.5, -2, 3])
+    learner.until(lambda: [shown(learner, f"position.{k}") for k in range(3)] == ["1.5", "−2", "3"])
+
+
+def test_keys_move_a_slider_by_steps_tens_and_to_its_ends(column: Open) -> None:
+    learner = column("euler-angles/embed?yaw=10.5")
+    for key, yaw in (
+        ("ArrowRight", 11.5), ("ArrowDown", 10.5), ("Shift+ArrowRight", 20.5), ("PageUp", 30.5), ("PageDown", 20.5),
+        ("End", 180), ("ArrowRight", 180), ("Home", -180),
+    ):  # fmt: skip
+        learner.press_keys("yaw", key)
+        held(learner, yaw=yaw)
+    learner.control("slider", "yaw").dblclick()
+    held(learner, yaw=30)
+
+
+def test_a_dragged_slider_takes_round_numbers_and_sends_no_more_than_is_drawn(column: Open) -> None:
+    learner = column("euler-angles/embed")
+    before = learner.sockets.column.messages
+    learner.slide("yaw", 140)
+    learner.until(lambda: learner.params["yaw"] > 100)
+    learner.until(lambda: shown(learner, "yaw") == f"{learner.params['yaw']:g}")
+    assert learner.params["yaw"] == round(learner.params["yaw"])
+    assert learner.sockets.column.messages - before <= 20
+
+
+def test_choices_switches_and_lists_answer(column: Open) -> None:
+    learner = column("transform-chain/embed")
+    learner.choose("axes.0", "x")
+    held(learner, axes="xyy")
+    learner.choose("swap", "2")
+    held(learner, swap=2)
+    learner.choose("swap", None)
+    held(learner, swap=None)
+    learner.press("Add link")
+    learner.until(lambda: learner.frame.locator('[data-slide="angles.3"]').count() == 1)
+    learner.press_keys("angles.3", "ArrowRight")
+    held(learner, angles=[30, 40, -30, 0.5])
+    learner = column("camera/embed")
+    learner.control("checkbox", "show_rays").press("Space")
+    held(learner, show_rays=False)
+    learner.choose("projection", "weak")
+    held(learner, projection="weak")
+
+
+def test_parts_that_change_keep_the_focus_and_what_is_open(column: Open) -> None:
+    learner = column("camera/embed")
+    frame = learner.frame
+    fold = frame.locator("details", has=frame.locator("summary", has_text="All points"))
+    fold.locator("summary").click()
+    ask = frame.locator('[data-control="fx"] .s3-ask')
+    ask.click()
+    frame.get_by_text("In pixel widths.").wait_for()
+    row = fold.get_by_role("button", name="Near post, top")
+    row.focus()
+    learner.page.keyboard.press("Enter")
+    held(learner, selected="near-post")
+    learner.until(lambda: row.get_attribute("aria-pressed") == "true")
+    assert frame.evaluate("document.activeElement.textContent") == "Near post, top"
+    assert fold.get_attribute("open") is not None
+    assert ask.get_attribute("aria-expanded") == "true"
+    assert frame.get_by_text("In pixel widths.").is_visible()
+
+
+def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) -> None:
+    learner = column("camera/embed")
+    frame = learner.frame
+
+    def lit() -> set[tuple[str, str]]:
+        return {(tag, link) for tag, link in frame.evaluate(LIT)}
+
+    frame.locator('[data-control="fx"]').hover()
+    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx")})
+    frame.locator('mtd[data-link="position"]').first.hover()
+    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position")})
+    learner.control("slider", "tilt").focus()
+    learner.page.mouse.move(5, 5)
+    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll")})
+
+
+def test_a_picture_is_enlarged_stays_live_and_goes_back(column: Open) -> None:
+    learner = column("triangulation/embed")
+    figure = learner.frame.locator("figure", has=learner.frame.locator('svg[data-pane="left"]'))
+    small = box(figure)["width"]
+    figure.get_by_role("button", name="larger").click()
+    learner.until(lambda: box(figure)["width"] > 2 * small)
+    learner.frame.locator("[data-handle=left_uv]").press("ArrowRight")
+    held(learner, left_uv=[411, 210])
+    learner.page.keyboard.press("Escape")
+    learner.until(lambda: box(figure)["width"] == small)
+
+
+def test_only_some_controls_are_there_when_a_link_says_so(column: Open) -> None:
+    learner = column("euler-angles/embed?only=yaw,roll&yaw=5")
+    inputs = learner.frame.locator("[data-slide], [data-choice]").evaluate_all("all => all.map((n) => n.dataset.slide)")
+    assert inputs == ["yaw", "roll"]
+    assert learner.frame.locator(".s3-fold").count() == 0
+    learner.press_keys("roll", "ArrowRight")
+    held(learner, roll=11)
+    learner.until(lambda: "only=yaw,roll" in learner.address)
+
+
+SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
+
+
+@pytest.mark.parametrize("slug", [sim.slug for sim in SIMS])
+def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None:
+    learner = column(f"{slug}/embed", size=ViewportSize(width=1280, height=800))
+    frame = learner.frame
+    for width, height in SIZES:
+        learner.page.set_viewport_size({"width": width, "height": height})
+        inner = frame.evaluate("[document.documentElement.scrollWidth, innerWidth]")
+        assert inner[0] <= inner[1], f"{width}×{height}: the page scrolls sideways"
+        over = frame.evaluate("(c => c.scrollWidth - c.clientWidth)(document.querySelector('.s3-column'))")
+        assert over <= 0, f"{width}×{height}: the column scrolls sideways by {over}"
+        scene, column_ = box(frame.locator(".s3-scene")), box(frame.locator(".s3-column"))
+        assert scene["width"] * scene["height"] > 0.25 * width * height, f"{width}×{height}: the scene is small"
+        assert scene["x"] + scene["width"] <= column_["x"] + 1 or scene["y"] + scene["height"] <= column_["y"] + 1
+        assert frame.evaluate(TARGETS.replace("LEAST", "23.5")) == [], f"{width}×{height}"
+    learner.page.set_viewport_size({"width": 1280, "height": 800})
+    primary = box(frame.locator(".s3-primary"))
+    assert primary["y"] + primary["height"] <= 800, "the first action is out of sight"
+
+
+def test_fingers_have_room(column: Open) -> None:
+    learner = column("camera/embed", size=ViewportSize(width=390, height=780), has_touch=True, is_mobile=True)
+    small = learner.frame.evaluate(TARGETS.replace("LEAST", "43.5"))
+    assert [
+        each for each in small if "enlarge" not in each and "data-link" not in each and "aria-pressed" not in each
+    ] == []
+
+
+def test_who_only_watches_has_what_they_see_and_nothing_to_set(classroom: Classroom, column: Open) -> None:
+    teacher = column("transform-chain/embed")
+    watcher = classroom.enter()
+    watcher.open_column(teacher.watch_link)
+    locked = ".s3-controls :is(input, select, [data-act], [data-nudge])"
+    watcher.until(lambda: all(n.is_disabled() for n in watcher.frame.locator(locked).all()))
+    teacher.press("Add link")
+    watcher.until(lambda: watcher.frame.locator('[data-slide="angles.3"]').is_disabled())
