@@ -94,7 +94,6 @@ def wait_live(page: Page) -> None:
         if frame.url.split("?")[0].endswith("/embed"):
             frame.wait_for_function("window.sim3?.live === true")
             frame.wait_for_selector(".s3-still", state="detached")
-            frame.wait_for_selector(".mantine-Notification-root", state="detached")
     settled(page)
 
 
@@ -110,13 +109,13 @@ def settled(page: Page) -> None:
 
 
 def thumbnail(browser: Browser, address: str, sim: Sim[Any, Any], theme: Literal["light", "dark"]) -> None:
-    """The bare scene; the window grows by whatever docked panels take from the canvas."""
+    """The bare scene; the window grows by what pictures beside it take."""
     bare = f"{address}/sims/{sim.slug}/embed?controls=0&theme={theme}"
     with opened(browser, bare, THUMB, theme, THUMB_SCALE) as page:
         wait_live(page)
         width, height = (2 * wanted - got for wanted, got in zip(THUMB, canvas(page)[2:], strict=True))
         page.set_viewport_size({"width": round(width), "height": round(height)})
-        page.add_style_tag(content="* { box-shadow: none !important }")
+        page.add_style_tag(content=".s3-looks { display: none !important }")
         settled(page)
         x, y, width, height = canvas(page)
         picture = page.screenshot(clip={"x": x, "y": y, "width": width, "height": height})

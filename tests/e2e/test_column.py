@@ -205,6 +205,7 @@ def test_only_some_controls_are_there_when_a_link_says_so(column: Open) -> None:
     learner.until(lambda: "only=yaw,roll" in learner.address)
 
 
+CUT = "all => all.filter((one) => one.scrollWidth > one.clientWidth + 1).length"
 SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
 
 
@@ -218,6 +219,8 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
         assert inner[0] <= inner[1], f"{width}×{height}: the page scrolls sideways"
         over = frame.evaluate("(c => c.scrollWidth - c.clientWidth)(document.querySelector('.s3-column'))")
         assert over <= 0, f"{width}×{height}: the column scrolls sideways by {over}"
+        cut = frame.locator(".s3-key .s3-formula").evaluate_all(CUT)
+        assert not cut, f"{width}×{height}: a formula is cut off"
         scene, column_ = box(frame.locator(".s3-scene")), box(frame.locator(".s3-column"))
         assert scene["width"] * scene["height"] > 0.25 * width * height, f"{width}×{height}: the scene is small"
         assert scene["x"] + scene["width"] <= column_["x"] + 1 or scene["y"] + scene["height"] <= column_["y"] + 1
