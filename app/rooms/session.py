@@ -106,7 +106,7 @@ class Session:
         """Take what a slider is moved to: of a parameter, or as `angles.2` of one of its entries."""
         field, dot, part = name.partition(".")
         kind = self.params.kinds.get(field)
-        sliders = [n for n, k in self.params.kinds.items() if isinstance(k, Slider | Numbers) and not k.hidden]
+        sliders = [each for each in self.params.visible if isinstance(self.params.kinds[each], Slider | Numbers)]
         if field not in sliders or isinstance(kind, Slider) == bool(dot) or (dot and not part.isdecimal()):
             raise Unknown("slider", name, sliders)
         self.change({name: round(value) if isinstance(kind, Slider) and kind.whole else float(value)})

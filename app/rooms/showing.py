@@ -24,7 +24,7 @@ class Showing:
 
     def news(self, params: Params, solution: Any, version: int) -> Message:
         """What differs from what was told last. The version says to which drawing of the scene it belongs."""
-        parts, values = self._column.parts(params, solution), self._column.values(params, solution)
+        parts, values = self._column.of(params, solution)
         new_parts = {name: html for name, html in parts.items() if self._parts.get(name) != html}
         if PANES in new_parts:  # other frames, which are to be filled
             new_parts |= {name: html for name, html in parts.items() if name.startswith("pane:")}

@@ -11,6 +11,8 @@ from collections.abc import Callable, Coroutine
 from contextvars import copy_context
 from typing import Any, TypeVar
 
+from starlette.requests import Request
+
 from app.rooms.solver import workers
 from sims.kit.progress import Work, at_work
 
@@ -120,3 +122,14 @@ class Answers:
     def close(self) -> None:
         """End the pool."""
         self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+async def found_for(request: Request, answers: Answers, find: Callable[[], T]) -> T:
+    """What `find` makes, in the turn of a request's address and as long as its caller is there."""
+    return await answers.find("" if request.client is None else request.client.host, find, _left(request))
+
+
+async def _left(request: Request) -> None:
+    """Ends when the caller has gone."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.routes.answers import RETRY, Busy
+from app.routes.answers import RETRY, Busy, found_for
 from app.routes.rendering import sim_or_404
 from app.routes.services import Given
 from app.trouble import question
@@ -194,7 +194,7 @@ def _add_solve(sim: AnySim) -> None:
             return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
 
         try:
-            found = await given.answers.find(address_of(request), answer, left(request)) if sim.heavy else answer()
+            found = await found_for(request, given.answers, answer) if sim.heavy else answer()
         except GeometryError as error:
             known = error.argument if error.argument in sim.params.model_fields else ""
             item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
@@ -208,16 +208,6 @@ def _add_solve(sim: AnySim) -> None:
         openapi_extra={"requestBody": {"content": {"application/json": {"schema": sim.params.model_json_schema()}}}},
         responses=_responses(sim),
     )(solve)  # fmt: skip
-
-
-def address_of(request: Request) -> str:
-    return "" if request.client is None else request.client.host
-
-
-async def left(request: Request) -> None:
-    """Ends when the caller has gone."""
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
 
 
 def _responses(sim: AnySim) -> dict[int | str, dict[str, Any]]:

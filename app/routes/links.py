@@ -85,8 +85,7 @@ WORDS = {"theme": ("light", "dark"), "controls": ("1", "0")}
 
 def controls(sim: Sim[Any, Any]) -> list[str]:
     """What `only` may name: parameters that have a control, and actions."""
-    shown = [name for name, kind in sim.params.kinds.items() if not kind.hidden]
-    return [*shown, *(action.name for action in sim.actions)]
+    return [*sim.params.visible, *(action.name for action in sim.actions)]
 
 
 def is_view(text: str) -> bool:

@@ -42,9 +42,9 @@ class Static(StaticFiles):
         return response
 
 
-def page(path: str) -> Callable[[Any], Any]:
+def page(path: str, on: APIRouter = router) -> Callable[[Any], Any]:
     """Registers who makes a page; HEAD is answered as GET is, but for the body."""
-    return router.api_route(path, methods=["GET", "HEAD"], response_class=HTMLResponse)
+    return on.api_route(path, methods=["GET", "HEAD"], response_class=HTMLResponse)
 
 
 @page("/")

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from fastapi import APIRouter, Request
-from fastapi.responses import HTMLResponse, Response
+from fastapi.responses import Response
 
 from app.routes import links, rendering
-from app.routes.api import address_of, left
-from app.routes.pages import refusal_of
+from app.routes.answers import found_for
+from app.routes.pages import page, refusal_of
 from app.routes.rendering import sim_or_404
 from app.routes.services import Given
 from geometry import GeometryError
@@ -38,7 +38,7 @@ class Field(NamedTuple):
     options: dict[str, str] | None
 
 
-@router.api_route("/sims/{slug}/text", methods=["GET", "HEAD"], response_class=HTMLResponse)
+@page("/sims/{slug}/text", router)
 async def text(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
     items = [(name, _spelled(sim, name, value)) for name, value in request.query_params.multi_items() if value.strip()]
@@ -46,7 +46,7 @@ async def text(request: Request, given: Given, slug: str) -> Response:
     library = given.sessions.given(sim)
     find = _finding(sim, params, library)
     try:
-        shown = await given.answers.find(address_of(request), find, left(request)) if sim.heavy else find()
+        shown = await found_for(request, given.answers, find) if sim.heavy else find()
     except GeometryError as error:
         raise refusal_of(params, error) from None
     form = list(_fields(sim, params, library))
@@ -79,10 +79,10 @@ def _spelled(sim: Sim[Any, Any], name: str, text: str) -> str:
 
 def _fields(sim: Sim[Any, Any], params: Params, library: tuple[Library, ...]) -> Iterator[Field]:
     offers = sim.offers(params, None, *library)
-    for name, kind in params.kinds.items():
-        if not kind.hidden:
-            value, about = getattr(params, name), sim.params.model_fields[name].description or ""
-            yield Field(name, offers.label(name), about, _shown(value), unit_of(kind), _options(kind, name, offers))
+    for name in params.visible:
+        kind, value = params.kinds[name], getattr(params, name)
+        about = sim.params.model_fields[name].description or ""
+        yield Field(name, offers.label(name), about, _shown(value), unit_of(kind), _options(kind, name, offers))
 
 
 def _shown(value: Any) -> str:

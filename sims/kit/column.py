@@ -1,22 +1,31 @@
 """What a sim's page shows beside the scene: words, numbers, pictures and controls, as HTML in parts.
 
 The page begins with all of it (`Column.html`). Then it is told of the parts that differ from what they were, and of
-what each input shows: `Column.parts` and `Column.values` of a state.
+what each input shows (`Column.of`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 from sims.kit import controls, pane, readout
 from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.sim import Action, Library, Sim, Typed
+from sims.kit.types import Place
 
 PANES = "panes"
 Parts = dict[str, str]
+
+
+class Shown(NamedTuple):
+    """The HTML of each part, and what each input shows, by their names."""
+
+    parts: Parts
+    values: dict[str, controls.Shown]
 
 
 class Column:
@@ -28,26 +37,44 @@ class Column:
         self._form: Any = None
         self._controls: Parts = {}
 
-    def values(self, params: Params, solution: Any) -> dict[str, controls.Shown]:
-        """What each input shows, by its name."""
-        found = controls.values(self._offers(params, solution))
-        for typed in self.sim.typed if solution is not None else ():
-            place = typed.place(params, solution) or (None, None, None)
-            found |= {f"{typed.handle}.{k}": value for k, value in enumerate(place)}
-        return found
+    def of(self, params: Params, solution: Any) -> Shown:
+        """What a state shows. Without a solution yet: the controls alone."""
+        offers = self.sim.offers(params, solution, *self._library)
+        parts, values = dict(self._controls_of(offers)), controls.values(offers)
+        if solution is not None:
+            places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
+            parts |= self._rest(params, solution, places)
+            for handle, place in places.items():
+                values |= {f"{handle}.{k}": value for k, value in enumerate(place or (None, None, None))}
+        return Shown(parts, values)
 
-    def parts(self, params: Params, solution: Any) -> Parts:
-        """The HTML of each part. Without a solution yet: the controls alone."""
-        found = dict(self._controls_of(self._offers(params, solution)))
-        if solution is None:
-            return found
+    def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
+        """The whole column; `only`: of the controls, those of these parameters and actions."""
+        offers = self.sim.offers(params, solution, *self._library)
+        parts = {f"control:{name}": controls.html(offers, name) for name in params.visible}
+        if solution is not None:
+            places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
+            parts |= self._rest(params, solution, places)
+        return "".join(self._page(parts, only))
+
+    def _controls_of(self, offers: Offers[Any]) -> Parts:
+        """The controls without what they show, made anew where what they offer may have changed."""
+        form = offers.form()
+        if form != self._form:
+            self._form = form
+            names = offers.params.visible
+            self._controls = {f"control:{name}": controls.html(offers, name, filled=False) for name in names}
+        return self._controls
+
+    def _rest(self, params: Params, solution: Any, places: Mapping[str, Place | None]) -> Parts:
+        """What follows from the solution; `places` are those of the nodes that can be typed."""
         sim = self.sim
-        found["caption"] = escape(sim.caption(params, solution))
+        found = {"caption": escape(sim.caption(params, solution))}
         read = readout.folded(sim.readouts(params, solution))
         for title in ("", *sim.folds):
             found[f"read:{title}"] = readout.render(read.get(title, ()))
         for typed in sim.typed:
-            found[f"control:{typed.handle}"] = "" if typed.place(params, solution) is None else placed(typed)
+            found[f"control:{typed.handle}"] = "" if places[typed.handle] is None else placed(typed)
         if sim.files is not None:
             preview = sim.files.preview(params, *self._library)
             found["preview"] = "" if preview is None else readout.render([preview])
@@ -57,32 +84,10 @@ class Column:
             found |= {f"pane:{each.name}": pane.content(each) for each in panes}
         return found
 
-    def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
-        """The whole column; `only`: of the controls, those of these parameters and actions."""
-        offers = self._offers(params, solution)
-        filled = {f"control:{name}": controls.html(offers, name) for name in self._known}
-        return "".join(self._page(self.parts(params, solution) | filled, only))
-
-    def _offers(self, params: Params, solution: Any) -> Offers[Any]:
-        return self.sim.offers(params, solution, *self._library)
-
-    def _controls_of(self, offers: Offers[Any]) -> Parts:
-        """The controls without what they show, made anew where what they offer may have changed."""
-        form = offers.form()
-        if form != self._form:
-            self._form = form
-            self._controls = {f"control:{name}": controls.html(offers, name, filled=False) for name in self._known}
-        return self._controls
-
     def _page(self, parts: Parts, only: Collection[str] | None) -> Iterator[str]:
         def part(name: str, tag: str = "div", kind: str = "") -> str:
-            inside = parts.get(name, "")
-            if name == PANES:  # its frames are filled
-                for key, content in parts.items():
-                    if key.startswith("pane:"):
-                        inside = inside.replace(
-                            f'data-part="{escape(key)}">', f'data-part="{escape(key)}">{content}', 1
-                        )
+            # the frames of pictures are parts within a part
+            inside = re.sub(r'data-part="(pane:[^"]*)">', lambda frame: frame[0] + parts[frame[1]], parts.get(name, ""))
             return f'<{tag} class="{kind}" data-part="{escape(name)}">{inside}</{tag}>'
 
         def wanted(action: Action) -> bool:
@@ -94,9 +99,8 @@ class Column:
         if sim.panes is not None:
             yield part(PANES, kind="s3-panes")
         yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
-        yield from (
-            part(f"control:{name}") for name in (self._names("") if only is None else only) if name in self._known
-        )
+        first = self._names("") if only is None else [name for name in only if name in sim.params.visible]
+        yield from (part(f"control:{name}") for name in first)
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
         yield self._actions(wanted)
         if only is None:
@@ -126,16 +130,11 @@ class Column:
             "Home view</button></div>"
         )
 
-    @property
-    def _known(self) -> list[str]:
-        """Parameters that have a control."""
-        return [name for name, kind in self.sim.params.kinds.items() if not kind.hidden]
-
     def _names(self, group: str) -> list[str]:
-        return [name for name in self._known if self.sim.params.kinds[name].group == group]
+        return [name for name in self.sim.params.visible if self.sim.params.kinds[name].group == group]
 
     def _titles(self) -> list[str]:
-        groups = [self.sim.params.kinds[name].group for name in self._known]
+        groups = [self.sim.params.kinds[name].group for name in self.sim.params.visible]
         groups += [action.group for action in self.sim.actions]
         return [title for title in dict.fromkeys((*self.sim.folds, *groups)) if title]
 

@@ -42,11 +42,9 @@ def values(offers: AnyOffers) -> dict[str, Shown]:
     """What each input shows in a state."""
     found: dict[str, Shown] = {}
     params = offers.params
-    for name, kind in params.kinds.items():
-        if kind.hidden:
-            continue
+    for name in params.visible:
         value = getattr(params, name)
-        match kind:
+        match kind := params.kinds[name]:
             case fields.Vector():
                 for k, entry in enumerate(value or ()):
                     found[f"{name}.{k}"] = entry
@@ -91,7 +89,7 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
 
 
 def control(name: str, label: str, inside: str, about: str, *, kind: str = "", target: str = "") -> str:
-    """A control with its label, what it means, and room for what is wrong with what somebody entered."""
+    """A control with its label, and what it means."""
     ident = ident_of(name)
     words = (
         f'<label for="{ident_of(target)}">{_worded(label)}</label>'
@@ -100,10 +98,14 @@ def control(name: str, label: str, inside: str, about: str, *, kind: str = "", t
     )
     ask, why = asked(ident, label, about)
     group = "" if target else f' role="group" aria-labelledby="n-{ident}"'
-    link = escape(name)
+    return _framed(name, kind, f'<div class="s3-label">{words}{ask}</div>{inside}{why}', group)
+
+
+def _framed(name: str, kind: str, inside: str, more: str = "") -> str:
+    """What a control stands in, with room for what is wrong with what somebody entered; `more` are attributes."""
     return (
-        f'<div class="s3-control {kind}" data-control="{escape(name)}" data-link="{link}"{group}>'
-        f'<div class="s3-label">{words}{ask}</div>{inside}{why}<p class="s3-wrong" role="alert" hidden=""></p></div>'
+        f'<div class="s3-control {kind}" data-control="{escape(name)}" data-link="{escape(name)}"{more}>'
+        f'{inside}<p class="s3-wrong" role="alert" hidden=""></p></div>'
     )
 
 
@@ -166,11 +168,9 @@ def switch(name: str, label: str, value: bool, about: str) -> str:
     ident = ident_of(name)
     ask, why = asked(ident, label, about)
     on = ' checked=""' if value else ""
-    return (
-        f'<div class="s3-control s3-switch" data-control="{escape(name)}" data-link="{escape(name)}">'
-        f'<div class="s3-label"><label><input type="checkbox" role="switch" data-switch="{escape(name)}"{on}/>'
-        f' {_worded(label)}</label>{ask}</div>{why}<p class="s3-wrong" role="alert" hidden=""></p></div>'
-    )
+    box = f'<input type="checkbox" role="switch" data-switch="{escape(name)}"{on}/>'
+    words = f'<div class="s3-label"><label>{box} {_worded(label)}</label>{ask}</div>{why}'
+    return _framed(name, "s3-switch", words)
 
 
 def select(name: str, label: str, options: Mapping[str, str], chosen: str | None) -> str:

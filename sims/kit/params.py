@@ -33,10 +33,13 @@ class Params(BaseModel):
     """What each field is."""
     numeric: ClassVar[Mapping[str, Numeric]] = {}
     """Those with bounds."""
+    visible: ClassVar[tuple[str, ...]] = ()
+    """Names of those that have a control."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         cls.kinds = {name: _kind(cls, name, field) for name, field in cls.model_fields.items()}
+        cls.visible = tuple(name for name, kind in cls.kinds.items() if not kind.hidden)
         cls.numeric = {name: kind for name, kind in cls.kinds.items() if isinstance(kind, Numeric)}
 
     def form(self) -> tuple[Any, ...]:

@@ -14,7 +14,7 @@ export class Handles {
     document.addEventListener("pointerdown", (event) => this.grab(event), true);
     document.addEventListener("pointermove", (event) => this.drag(event), true);
     for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, (event) => this.letGo(event), true);
-    // Fingers that hold a handle must not scroll the panel.
+    // Fingers that hold a handle must not scroll the column.
     document.addEventListener("touchmove", (event) => this.held && event.preventDefault(), { passive: false, capture: true });
     document.addEventListener("click", (event) => this.click(event));
     document.addEventListener("keydown", (event) => this.key(event), true);

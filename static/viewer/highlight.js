@@ -4,7 +4,7 @@ import { sim } from "./page.js";
 
 const SELECTS = ".s3-point, tr:has(button), [data-handle]";
 
-export function linked(name) {
+function linked(name) {
   return `[data-link~="${CSS.escape(name)}"]`;
 }
 

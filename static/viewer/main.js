@@ -13,7 +13,7 @@ import { Parts } from "./parts.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
 import { View } from "./view.js";
-import { drawnVersion, hasWebGL, prepare, start } from "./viser_dom.js";
+import { drawnVersion, prepare, start } from "./viser_dom.js";
 import { Words } from "./words.js";
 import { Work } from "./work.js";
 
@@ -37,6 +37,7 @@ class Page {
     this.view = new View(this.channel, this.address, () => this.height.tellSoon());
     this.toolbar = new Toolbar(this.address, this.words, this.files, this.view);
     this.state = null;
+    this.sceneless = false;
     this.does = {
       state: (message) => this.takeState(message),
       show: (message) => this.takeParts(message),
@@ -53,13 +54,8 @@ class Page {
     this.trouble.lost();
     this.address.show();
     this.channel.open();
-    if (hasWebGL()) {
-      prepare(this.view.first, (view) => this.view.looked(view));
-      start();
-    } else {
-      this.trouble.blind();
-      this.sceneless = true;
-    }
+    prepare(this.view.first, (view) => this.view.looked(view), () => this.goBlind());
+    start();
     this.looking = setInterval(() => this.goLive(), LOOKING);
   }
 
@@ -94,6 +90,12 @@ class Page {
   fail({ message, errors, control }) {
     if (!control || !this.controls.refuse(control, message)) this.words.notify("⚠ " + message);
     this.host.post({ type: "sim3:error", message, errors });
+  }
+
+  goBlind() {
+    if (this.sceneless) return;
+    this.sceneless = true;
+    this.trouble.blind();
   }
 
   // The still picture stays until the scene is live.

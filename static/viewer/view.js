@@ -24,7 +24,6 @@ export class View {
     this.channel = channel;
     this.address = address;
     this.linked = read(address.options.get("view"));
-    this.chosen = this.linked !== null;
     this.home = fit();
     this.camera = this.linked ?? this.home;
     this.sizing = this.keeping = this.hinting = 0;
@@ -133,7 +132,6 @@ export class View {
   }
 
   keep() {
-    this.chosen = !this.athome;
     this.keeping ||= setTimeout(() => {
       this.keeping = 0;
       if (this.athome) this.address.options.delete("view");
@@ -144,9 +142,9 @@ export class View {
 
   refit() {
     const before = this.home;
-    const moved = this.chosen;
+    const chosen = !this.athome;
     this.home = fit();
-    if (moved || Math.hypot(...this.home.map((v, i) => v - before[i])) < 0.02 * sim.radius) return;
+    if (chosen || Math.hypot(...this.home.map((v, i) => v - before[i])) < 0.02 * sim.radius) return;
     this.go(this.home);
   }
 

@@ -10,7 +10,8 @@ let viewer = null; // viser's own state, once it is there
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
-export function prepare(view, looked) {
+// `looked` hears of each view from which the scene is seen, `blind` that the browser draws no 3D.
+export function prepare(view, looked, blind) {
   const search = new Query({
     websocket: `${sim.socket}?viewer=${sim.viewer}`,
     initialCameraPosition: view.slice(0, 3).join(","),
@@ -23,18 +24,30 @@ export function prepare(view, looked) {
       super(init === location.search ? search : init);
     }
   };
-  if (sim.dark) darkenLabels();
+  if (sim.dark && window.WebGL2RenderingContext) darkenLabels();
   if (self.origin === "null") avoidModuleWorkers();
   const replace = history.replaceState.bind(history);
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
   // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
   document.hasFocus = () => document.visibilityState === "visible";
+  noticeBlindness(blind);
   keepKeys();
   adopt(looked);
 }
 
 export function start() {
   document.body.append(Object.assign(document.createElement("script"), { src: sim.client, crossOrigin: "anonymous" }));
+}
+
+// Whether there is WebGL is seen when viser asks for it: to ask beforehand takes up to 0.4 s without a GPU.
+function noticeBlindness(blind) {
+  const { prototype } = HTMLCanvasElement;
+  const ask = prototype.getContext;
+  prototype.getContext = function (kind, ...options) {
+    const context = ask.call(this, kind, ...options);
+    if (kind === "webgl2" && !context) blind();
+    return context;
+  };
 }
 
 // viser's client turns the view by keys wherever the focus is; here only while the scene has it.
@@ -133,7 +146,4 @@ export function describeScene(words) {
   canvas.setAttribute("aria-label", words);
 }
 
-export function hasWebGL() {
-  return Boolean(document.createElement("canvas").getContext("webgl2"));
-}
 

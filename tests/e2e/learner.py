@@ -64,12 +64,18 @@ class Witness:
         self.hosts = {"127.0.0.1", "localhost"}
         self.expected: tuple[str, ...] = VISERS_OWN_WORDS
         context.on("console", self._said)
-        context.on("weberror", lambda error: self.complaints.append(f"exception: {error.error}"))
+        self.failures: tuple[str, ...] = ()
+        """Words of exceptions that a test provokes."""
+        context.on("weberror", lambda error: self._failed(f"{error.error}"))
         context.on("request", self._asked)
 
     def expect(self, *words: str) -> None:
         """From now on a page may complain in these words, because the test provokes it."""
         self.expected += words
+
+    def _failed(self, text: str) -> None:
+        if not any(words in text for words in self.failures):
+            self.complaints.append(f"exception: {text}")
 
     def _said(self, message: ConsoleMessage) -> None:
         text = message.text

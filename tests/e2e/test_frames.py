@@ -154,3 +154,28 @@ def test_a_bad_file_that_is_dropped_is_spoken_of_where_it_can_be_seen(classroom:
     notice = learner.page.locator(".s3-notice").filter(has_text="Nothing has changed")
     notice.wait_for()
     assert "notes.ply" in (notice.text_content() or "")
+
+
+BLIND = """(() => {
+    const ask = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...options) {
+        return kind.startsWith("webgl") ? null : ask.call(this, kind, ...options);
+    };
+    delete window.WebGL2RenderingContext;
+})()"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_without_webgl_all_but_the_scene_works(classroom: Classroom, theme: str) -> None:
+    learner = classroom.enter()
+    learner.witness.expect("WebGL", "THREE.")
+    learner.witness.failures = ("Error creating WebGL context",)
+    learner.page.add_init_script(BLIND)
+    learner.page.goto(f"{learner.url}/sims/quaternion/embed?theme={theme}")
+    trouble = learner.page.get_by_role("alert").filter(has_text="can’t draw 3D")
+    trouble.wait_for()
+    learner.page.wait_for_function("window.sim3.live === true")
+    learner.type("angle", "120")
+    learner.until(lambda: learner.params["angle"] == 120)
+    trouble.get_by_role("link").click()
+    learner.page.get_by_role("heading", name="Quaternions, without the scene").wait_for()

@@ -171,8 +171,8 @@ def test_every_state_draws(rigs: dict[str, Rig], sim: AnySim, name: str, params:
     assert rig.column.version == model.version == rig.session.version
     solution = sim.solve(params)
     fresh = Column(sim)
-    assert rig.column.parts == fresh.parts(params, solution)
-    own = fresh.values(params, solution)
+    parts, own = fresh.of(params, solution)
+    assert rig.column.parts == parts
     assert {each: rig.column.values[each] for each in own} == own
     assert not mistakes("".join(rig.column.parts.values()))
     named = [text for text in model.labels().values() if len(text.strip("′'")) > 1]
@@ -238,7 +238,7 @@ def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
     page = xml(html)
     places = [e.get("data-part") for e in page.iter() if e.get("data-part")]
     assert len(set(places)) == len(places)
-    assert {*column.parts(params, solution)} <= {*places}
+    assert {*column.of(params, solution).parts} <= {*places}
     idents = [e.get("id") for e in page.iter() if e.get("id")]
     assert len(set(idents)) == len(idents)
     assert {*readout.folded(sim.readouts(params, solution))} <= {"", *sim.folds}, "a fold that isn't declared"

@@ -99,7 +99,7 @@ class Slider(Number):
 
 @dataclass(frozen=True)
 class NumberBox(Number):
-    """A number that is typed. One that may be absent (None) has a box in which one step below the least is that."""
+    """A number that is typed. One that may be absent (None) has a box that may be empty."""
 
     control: ClassVar[str] = "number"
 
