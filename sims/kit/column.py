@@ -99,7 +99,9 @@ class Column:
         if sim.panes is not None:
             yield part(PANES, kind="s3-panes")
         yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
-        first = self._names("") if only is None else [name for name in only if name in sim.params.visible]
+        first = (
+            self._names("") if only is None else [name for name in dict.fromkeys(only) if name in sim.params.visible]
+        )
         yield from (part(f"control:{name}") for name in first)
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
         yield self._actions(wanted)

@@ -274,7 +274,8 @@ def test_every_control_says_what_it_is(sim: AnySim) -> None:
 @each_sim
 def test_only_some_controls_can_be_asked_for(sim: AnySim) -> None:
     wanted = next(name for name, kind in sim.params.kinds.items() if not kind.hidden)
-    page = xml(Column(sim).html(sim.params(), None, [wanted]))
+    page = xml(Column(sim).html(sim.params(), None, [wanted, wanted]))
+    assert [e.get("data-part") for e in page.iter() if e.get("data-part")].count(f"control:{wanted}") == 1
     shown = {str(e.get("data-control")).partition(".")[0] for e in page.iter() if e.get("data-control")}
     assert shown == {wanted}
     assert {e.get("data-act") for e in page.iter("button") if e.get("data-act")} == {"reset"}
