@@ -32,6 +32,7 @@ ADDRESSES = {
     "dark": f"/sims/{SIM.slug}?theme=dark",
     "bad link": f"/sims/{SIM.slug}?colour=red&view=1,2&controls=0",
     "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
+    **{f"{sim.slug} without its scene": f"/sims/{sim.slug}/text" for sim in SIMS},
     "documentation": "/docs",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
@@ -68,8 +69,9 @@ class Document(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         element = Element(tag, {name: value or "" for name, value in attrs})
-        self.elements.append(element)
-        if tag not in ("br", "img", "link", "meta", "source"):
+        if tag != "title" or all(other.tag != "svg" for other in self._open):  # a picture's marks have titles too
+            self.elements.append(element)
+        if tag not in ("br", "img", "input", "link", "meta", "source"):
             self._open.append(element)
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:

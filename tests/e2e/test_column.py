@@ -213,18 +213,21 @@ SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780),
 def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None:
     learner = column(f"{slug}/embed", size=ViewportSize(width=1280, height=800))
     frame = learner.frame
+    folds = "open => document.querySelectorAll('details').forEach((fold) => (fold.open = open))"
     for width, height in SIZES:
         learner.page.set_viewport_size({"width": width, "height": height})
         inner = frame.evaluate("[document.documentElement.scrollWidth, innerWidth]")
         assert inner[0] <= inner[1], f"{width}×{height}: the page scrolls sideways"
+        frame.evaluate(folds, True)
         over = frame.evaluate("(c => c.scrollWidth - c.clientWidth)(document.querySelector('.s3-column'))")
         assert over <= 0, f"{width}×{height}: the column scrolls sideways by {over}"
-        cut = frame.locator(".s3-key .s3-formula").evaluate_all(CUT)
-        assert not cut, f"{width}×{height}: a formula is cut off"
+        for what in (".s3-formula:visible", "[data-box]:visible"):
+            assert not frame.locator(what).evaluate_all(CUT), f"{width}×{height}: {what} is cut off"
         scene, column_ = box(frame.locator(".s3-scene")), box(frame.locator(".s3-column"))
         assert scene["width"] * scene["height"] > 0.25 * width * height, f"{width}×{height}: the scene is small"
         assert scene["x"] + scene["width"] <= column_["x"] + 1 or scene["y"] + scene["height"] <= column_["y"] + 1
         assert frame.evaluate(TARGETS.replace("LEAST", "23.5")) == [], f"{width}×{height}"
+    frame.evaluate(folds, False)
     learner.page.set_viewport_size({"width": 1280, "height": 800})
     primary = box(frame.locator(".s3-primary"))
     assert primary["y"] + primary["height"] <= 800, "the first action is out of sight"
