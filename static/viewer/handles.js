@@ -14,8 +14,9 @@ export class Handles {
     document.addEventListener("pointerdown", (event) => this.grab(event), true);
     document.addEventListener("pointermove", (event) => this.drag(event), true);
     for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, (event) => this.letGo(event), true);
-    // Fingers that hold a handle must not scroll the column.
-    document.addEventListener("touchmove", (event) => this.held && event.preventDefault(), { passive: false, capture: true });
+    // While a handle is held, neither fingers nor a wheel scroll the column.
+    for (const kind of ["touchmove", "wheel"])
+      document.addEventListener(kind, (event) => this.held && event.preventDefault(), { passive: false, capture: true });
     document.addEventListener("click", (event) => this.click(event));
     document.addEventListener("keydown", (event) => this.key(event), true);
   }
@@ -34,12 +35,11 @@ export class Handles {
     event.preventDefault();
     event.stopPropagation();
     const svg = grip.closest("svg");
-    const start = place(event, svg);
     grip.focus({ preventScroll: true });
     document.documentElement.setPointerCapture(event.pointerId);
     this.held = {
-      pointer: event.pointerId, dx: Number(grip.dataset.x) - start.x, dy: Number(grip.dataset.y) - start.y,
-      name: grip.dataset.handle, pane: svg.dataset.pane, link: grip.dataset.link, moved: false,
+      pointer: event.pointerId, from: [event.clientX, event.clientY], x: Number(grip.dataset.x), y: Number(grip.dataset.y),
+      scale: svg.getScreenCTM().a, name: grip.dataset.handle, pane: svg.dataset.pane, link: grip.dataset.link, moved: false,
     };
     document.documentElement.classList.add("s3-holding");
   }
@@ -48,10 +48,11 @@ export class Handles {
     const { held } = this;
     if (held?.pointer !== event.pointerId) return;
     event.preventDefault();
-    const svg = pictured(held.pane);
-    if (!svg) return;
-    const at = place(event, svg);
-    this.moveTo(held.name, { x: at.x + held.dx, y: at.y + held.dy }, held.pane);
+    if (!pictured(held.pane)) return;
+    // By the way that the pointer went, not by where the picture is: text above it may get another line meanwhile.
+    const [x, y] = held.from;
+    const at = { x: held.x + (event.clientX - x) / held.scale, y: held.y + (event.clientY - y) / held.scale };
+    this.moveTo(held.name, at, held.pane);
     held.moved = true;
   }
 

@@ -1,6 +1,7 @@
 // The parts of the column: what the server says differs is put in its place.
 import { column } from "./page.js";
 import { morph } from "./morph.js";
+import { Steady } from "./steady.js";
 
 export class Parts {
   constructor(pace, controls, handles, highlight) {
@@ -8,11 +9,16 @@ export class Parts {
     this.controls = controls;
     this.handles = handles;
     this.highlight = highlight;
+    this.steady = new Steady();
     this.version = -1;
   }
 
-  show({ version, values, parts }) {
-    this.version = version;
+  show(message) {
+    this.version = message.version;
+    this.steady.through(() => this.put(message));
+  }
+
+  put({ version, values, parts }) {
     // Frames of pictures come before what is in them.
     for (const [name, html] of Object.entries(parts)) {
       const node = column.querySelector(`[data-part="${CSS.escape(name)}"]`);

@@ -33,7 +33,7 @@ from tests.column import ColumnModel
 from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
 
 T = TypeVar("T")
-PATIENCE = 120.0
+PATIENCE = 60.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
 OPTIONS = ("view", "controls", "theme", "only")
 THUMB = 16.0

@@ -10,7 +10,7 @@ from playwright.sync_api import ViewportSize
 
 from sims import SIMS
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import LIT, Learner, box
+from tests.e2e.learner import LIT, THUMB, Learner, box
 
 Open = Callable[..., Learner]
 PASTE = """([node, text]) => {
@@ -127,6 +127,37 @@ def test_a_dragged_slider_takes_round_numbers_and_sends_no_more_than_is_drawn(co
     learner.until(lambda: shown(learner, "yaw") == f"{learner.params['yaw']:g}")
     assert learner.params["yaw"] == round(learner.params["yaw"])
     assert learner.sockets.column.messages - before <= 20
+
+
+def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Open) -> None:
+    """A point that is dragged until the rays part, and a slider into gimbal lock: the numbers above get fewer, or more."""
+    learner = column("triangulation/embed", size=ViewportSize(width=390, height=780))
+    mouse, picture = learner.page.mouse, learner.frame.locator("svg[data-pane=right]")
+    handle = learner.frame.locator("[data-handle=right_uv] .s3-core")
+    handle.scroll_into_view_if_needed()
+    at, before = box(handle), box(picture)
+    x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+    mouse.move(x, y)
+    mouse.down()
+    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture")):
+        mouse.move(x + far, y + far / 4, steps=3)
+        learner.until(lambda words=words: words in (learner.frame.locator(".s3-caption").text_content() or ""))  # type: ignore[misc]
+        scale = before["width"] / 640
+        held(learner, right_uv=pytest.approx([320 + far / scale, 210 + far / 4 / scale], abs=0.02))
+        assert box(picture) == pytest.approx(before, abs=1)
+    mouse.up()
+
+    learner = column("gimbal-lock/embed", size=ViewportSize(width=700, height=600))
+    mouse, slider = learner.page.mouse, learner.control("slider", "pitch")
+    slider.scroll_into_view_if_needed()
+    track = box(slider)
+    mouse.move(track["x"] + track["width"] / 2, track["y"] + 12)
+    mouse.down()
+    mouse.move(track["x"] + track["width"] / 2 + (track["width"] - THUMB) / 4, track["y"] + 12, steps=3)
+    learner.until(lambda: "Two rings now" in (learner.frame.locator(".s3-caption").text_content() or ""))
+    held(learner, pitch=90)
+    assert box(slider)["y"] == pytest.approx(track["y"], abs=1)
+    mouse.up()
 
 
 def test_choices_switches_and_lists_answer(column: Open) -> None:
