@@ -16,7 +16,13 @@ from typing import TypedDict
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
-WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+# WebGL is drawn in software; the page around it then needs no WebGL of its own to be put together.
+WEBGL_WITHOUT_GPU = (
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",
+)
 QUIET = (
     "--disable-background-networking",
     "--disable-component-update",

@@ -73,11 +73,16 @@ def wait_for(happened: Callable[[], T], what: str, patience: float = PATIENCE) -
         time.sleep(0.005)
 
 
+PROMPT = "from app import __main__; from app.rooms import telling; telling.STATE_INTERVAL = 0.05; __main__.main()"
+"""A server that tells a new state sooner than `python -m app` does: tests wait for little else."""
+
+
 class Server:
     """`python -m app` on a free port of this machine; settings as keyword arguments (`SIM3_…="…"`)."""
 
-    def __init__(self, **settings: str) -> None:
+    def __init__(self, *arguments: str, **settings: str) -> None:
         self.port = free_port()
+        self._arguments = arguments or ("-m", "app")
         self._settings = settings
         self._log = tempfile.TemporaryFile("ab+")  # noqa: SIM115 — open as long as the server is
         self._process: subprocess.Popen[bytes] | None = None
@@ -112,7 +117,7 @@ class Server:
         inherited = {k: v for k, v in os.environ.items() if not k.startswith("SIM3_")}
         own = {"SIM3_HOST": "127.0.0.1", "SIM3_PORT": str(self.port), "PYTHONUNBUFFERED": "1"}
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "app"],
+            [sys.executable, *self._arguments],
             cwd=ROOT,
             env={**inherited, **own, **self._settings},
             stdin=subprocess.DEVNULL,

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
@@ -25,12 +26,15 @@ from playwright.sync_api import (
     Request,
     WebSocket,
 )  # fmt: skip
+from websockets.sync.client import ClientConnection
 
 from sims import by_slug
 from sims.kit.params import Params
 from sims.kit.readout import figure
+from tests.app.page import connect
 from tests.column import ColumnModel
-from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message
+from tests.frames import ORIGIN, Message, SceneModel, SceneNode, decode_message, encode_message
+from tests.server import camera_message
 
 T = TypeVar("T")
 PATIENCE = 60.0
@@ -44,6 +48,7 @@ VISERS_OWN_WORDS = (
     "THREE.Clock: This module has been deprecated",
     "Unable to preventDefault inside passive event listener invocation",
     "KHR_parallel_shader_compile extension not supported",
+    "GPU stall due to ReadPixels",
 )
 
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
@@ -60,14 +65,18 @@ class Witness:
     """What must not happen on any page of a browser: errors, warnings, requests to other hosts."""
 
     def __init__(self, context: BrowserContext) -> None:
-        self.complaints: list[str] = []
         self.hosts = {"127.0.0.1", "localhost"}
-        self.expected: tuple[str, ...] = VISERS_OWN_WORDS
+        self.begin()
         context.on("console", self._said)
-        self.failures: tuple[str, ...] = ()
-        """Words of exceptions that a test provokes."""
         context.on("weberror", lambda error: self._failed(f"{error.error}"))
         context.on("request", self._asked)
+
+    def begin(self) -> None:
+        """Nothing is known, and nothing is expected."""
+        self.complaints: list[str] = []
+        self.expected: tuple[str, ...] = VISERS_OWN_WORDS
+        self.failures: tuple[str, ...] = ()
+        """Words of exceptions that a test provokes."""
 
     def expect(self, *words: str) -> None:
         """From now on a page may complain in these words, because the test provokes it."""
@@ -99,7 +108,29 @@ class Sockets:
         self.told: list[Message] = []
         """Messages on the channel, from the server."""
         self.connected = 0
+        self._stand_in: ClientConnection | None = None
         page.on("websocket", self._opened)
+
+    def draw(self, address: str) -> None:
+        """Receive the scene in the page's place; it must not have opened viser's websocket itself."""
+        self.scene = SceneModel()
+        self._stand_in = connect(address, viser=True)
+        self._stand_in.send(encode_message(camera_message()))
+
+    def forget(self) -> None:
+        """Another page is opened: what the one before it showed is past. A browser closes its own websockets."""
+        self.column, self.camera = ColumnModel(), {}
+        self.told.clear()
+        self.sent.clear()
+        if self._stand_in is not None:
+            self._stand_in.close()
+            self._stand_in = None
+
+    def hear(self) -> None:
+        """Take what came for the page that is drawn in its place."""
+        with suppress(TimeoutError):
+            while self._stand_in is not None:
+                self.scene.feed(self._stand_in.recv(timeout=0))
 
     @property
     def state(self) -> Message:
@@ -143,6 +174,7 @@ class Learner:
         self.url = url
         self.sockets = Sockets(page)
         self.frame: Frame = page.main_frame
+        self._painted = True
         self.addresses: list[str] = []
         """Every address that the page and its frames had."""
         page.on("framenavigated", lambda frame: self.addresses.append(frame.url))
@@ -152,14 +184,32 @@ class Learner:
 
     def open(self, path: str) -> None:
         """Open a sim's address and wait until it is live."""
-        self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
+        self._go(path)
         self.wait_live()
 
     def open_column(self, path: str) -> None:
-        """Open a sim's address without its scene, which takes most of the time: the column beside it works."""
-        self.page.route("**/viser/*/loader.js", lambda route: route.fulfill(body="", content_type="text/javascript"))
+        """Open a sim's address without viser's client, which takes most of the time.
+
+        The column beside the scene works. What the scene is sent is received here, and nothing is painted.
+        """
+        if self._painted:
+            self._painted = False
+            self.page.route("**/viser/**", lambda route: route.fulfill(body="", content_type="text/javascript"))
+        self._go(path)
+        self.wait_live()
+
+    def leave(self) -> None:
+        """Leave the page empty for the next learner."""
+        self.page.mouse.move(0, 0)
+        self.page.goto("about:blank")
+        self.sockets.forget()
+        self.addresses.clear()
+        self.frame = self.page.main_frame
+        self.witness.begin()
+
+    def _go(self, path: str) -> None:
+        self.sockets.forget()
         self.page.goto(path if path.startswith("http") else f"{self.url}/sims/{path}")
-        self.until(lambda: bool(self.sockets.column.parts and self.sockets.states))
 
     def open_page(self, path: str) -> None:
         """Open a page that holds the sim in a frame, and go on in the frame."""
@@ -172,12 +222,18 @@ class Learner:
         self.wait_live()
 
     def reload(self) -> None:
+        self.sockets.forget()
         self.page.reload()
         self.wait_live()
 
     def wait_live(self) -> None:
-        self.frame.wait_for_function("window.sim3?.live === true")
-        self.until(lambda: bool(self.sockets.state and self.sockets.camera))
+        if self._painted:
+            self.frame.wait_for_function("window.sim3?.live === true")
+            self.until(lambda: bool(self.sockets.state and self.sockets.camera))
+            return
+        self.until(lambda: bool(self.sockets.column.parts and self.sockets.state))
+        self.sockets.draw(self.frame.evaluate("`${sim3.socket}?viewer=${sim3.viewer}`"))
+        self.until(lambda: self.scene.version >= 0)
 
     def until(self, happened: Callable[[], T], patience: float = PATIENCE) -> T:
         """Wait until `happened` gives something true and raises nothing; sockets are heard meanwhile."""
@@ -191,12 +247,13 @@ class Learner:
                     raise
             else:
                 return answer
-            self.page.wait_for_timeout(50)
+            self.page.wait_for_timeout(20)
 
     # ---- what is known of the sim
 
     @property
     def scene(self) -> SceneModel:
+        self.sockets.hear()
         return self.sockets.scene
 
     @property

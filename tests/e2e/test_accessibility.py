@@ -17,7 +17,6 @@ from tests.e2e.picture import Picture
 INPUTS = ":is([data-slide], [data-box], [data-choice], [data-switch], [data-act]):visible"
 INPUT = "({ dataset: d }) => d.slide ?? d.box ?? d.choice ?? d.switch ?? d.act"
 TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
-FRAME = '<!doctype html><html lang="en"><title>A sim</title><main><h1>A sim</h1></main></html>'
 # Tab through the page: of each stop its name, and what its looks are with the focus.
 STOP = """() => {
   const stop = document.activeElement;
@@ -56,6 +55,7 @@ def axe(page: Page, rules: list[str] = TAGS) -> list[str]:
 
 def walk(frame: Frame, page: Page) -> list[dict[str, Any]]:
     """Where the Tab key leads, once round."""
+    frame.evaluate("document.body.tabIndex = -1, document.body.focus(), document.body.removeAttribute('tabindex')")
     for _ in range(160):
         page.keyboard.press("Tab")
         if not frame.evaluate(STOP):
@@ -68,12 +68,11 @@ def unfold(frame: Frame) -> None:
     """Open every fold by keyboard."""
     for head in frame.locator("summary:visible").all():
         head.press("Enter")
-    frame.evaluate("document.body.tabIndex = -1, document.body.focus(), document.body.removeAttribute('tabindex')")
 
 
 @pytest.mark.parametrize("slug", [sim.slug for sim in SIMS])
 def test_a_sim_is_for_everybody(classroom: Classroom, slug: str) -> None:
-    learner = classroom.open(f"{slug}/embed")
+    learner = classroom.open_column(f"{slug}/embed")
     assert axe(learner.page) == []
 
     unfold(learner.frame)
@@ -90,8 +89,17 @@ def test_a_sim_is_for_everybody(classroom: Classroom, slug: str) -> None:
     before = learner.until(learner.spoken)
     learner.frame.locator("[data-slide]:visible").first.press("ArrowRight")
     learner.until(lambda: learner.spoken() not in ("", before))
+
+
+def test_a_scene_is_for_everybody(classroom: Classroom) -> None:
+    learner = classroom.open("quaternion/embed")
+    assert axe(learner.page) == []
     canvas = learner.frame.locator("canvas[role]")
-    assert learner.spoken() in (canvas.get_attribute("aria-label") or "")
+    learner.until(lambda: learner.spoken() in (canvas.get_attribute("aria-label") or ""))
+    before = learner.spoken()
+    learner.press_keys("angle", "ArrowRight")
+    learner.until(lambda: learner.spoken() != before and learner.spoken() in str(canvas.get_attribute("aria-label")))
+    assert "canvas" in {stop["html"][1:7] for stop in walk(learner.frame, learner.page)}
 
 
 def test_a_sim_in_the_dark_is_for_everybody(classroom: Classroom) -> None:
@@ -105,23 +113,3 @@ def test_a_sim_in_the_dark_is_for_everybody(classroom: Classroom) -> None:
         return bool(pixels.max() > 120 and np.median(pixels) < 80)
 
     learner.until(lettered)
-
-
-def test_the_pages_are_for_everybody(classroom: Classroom) -> None:
-    """Without their sims, which have tests of their own; in the dark the markup is the same, and only colours differ."""
-    learner = classroom.enter()
-    learner.page.route("**/embed*", lambda route: route.fulfill(body=FRAME, content_type="text/html"))
-    for path in ["/", *(f"/sims/{sim.slug}" for sim in SIMS)]:
-        learner.page.goto(f"{learner.url}{path}?theme=light")
-        assert axe(learner.page) == [], path
-        learner.page.evaluate("document.documentElement.dataset.theme = 'dark'")
-        assert axe(learner.page, ["color-contrast", "link-in-text-block"]) == [], path
-
-
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_the_pages_of_errors_and_a_page_with_its_sim_are_for_everybody(classroom: Classroom, theme: str) -> None:
-    learner = classroom.enter(color_scheme=theme)
-    learner.witness.expect("status of 4")
-    for path in ("/sims/euler-angles?yaw=999", "/sims/nothing", f"/sims/{SIMS[0].slug}?theme={theme}"):
-        learner.page.goto(learner.url + path)
-        assert axe(learner.page) == [], path

@@ -14,7 +14,7 @@ from tests.e2e.picture import Picture
 
 
 def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom) -> None:
-    learner = classroom.open("euler-angles/embed?yaw=45&pitch=20")
+    learner = classroom.open_column("euler-angles/embed?yaw=45&pitch=20")
     learner.sees(yaw=45)
     assert learner.query() == "yaw=45", "default values are left out"
 
@@ -83,7 +83,7 @@ def test_the_sim_page_follows_the_sim(classroom: Classroom) -> None:
 
 
 def test_share_gives_a_link_to_the_same_state(classroom: Classroom) -> None:
-    learner = classroom.open(
+    learner = classroom.open_column(
         "euler-angles/embed?order=zxz&view=4,1,2,0,0,0", permissions=["clipboard-read", "clipboard-write"]
     )
     learner.type("yaw", "123")
@@ -131,8 +131,8 @@ def test_theme_view_and_controls_of_a_link_work_and_last(classroom: Classroom) -
 
 
 def test_the_address_never_holds_the_key_of_a_room(classroom: Classroom) -> None:
-    teacher = classroom.open("euler-angles/embed?yaw=45&theme=light")
-    helper = classroom.open(f"{teacher.room}?theme=light")
+    teacher = classroom.open_column("euler-angles/embed?yaw=45&theme=light")
+    helper = classroom.open_column(f"{teacher.room}?theme=light")
     for learner in (teacher, helper):
         learner.sees(yaw=45)
         assert learner.address == f"{teacher.url}/sims/euler-angles/embed?yaw=45&theme=light"
@@ -140,7 +140,7 @@ def test_the_address_never_holds_the_key_of_a_room(classroom: Classroom) -> None
     helper.type("yaw", "50")
     teacher.sees(yaw=50)
 
-    copied = classroom.open(teacher.address)
+    copied = classroom.open_column(teacher.address)
     copied.sees(yaw=50)
     assert copied.room != teacher.room, "whoever copies the address gets a room of their own"
     helper.reload()

@@ -39,7 +39,7 @@ def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
 
 
 def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed?fy=300")
+    learner = classroom.open_column("camera/embed?fy=300")
     learner.press_keys("fx", "ArrowRight")
     agree(learner, fx=610, fy=305)
     learner.choose("projection", "orthographic")
@@ -110,7 +110,7 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
 
 
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed")
+    learner = classroom.open_column("camera/embed")
     wanted = agree(learner)["subject"]["height"]
     since = len(learner.sockets.told)
     learner.press("Dolly zoom")

@@ -31,12 +31,7 @@ TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select,
 
 @pytest.fixture
 def column(classroom: Classroom) -> Open:
-    def opened(path: str, **options: Any) -> Learner:
-        learner = classroom.enter(**options)
-        learner.open_column(path)
-        return learner
-
-    return opened
+    return classroom.open_column
 
 
 def held(learner: Learner, **expected: Any) -> None:
@@ -272,10 +267,9 @@ def test_fingers_have_room(column: Open) -> None:
     ] == []
 
 
-def test_who_only_watches_has_what_they_see_and_nothing_to_set(classroom: Classroom, column: Open) -> None:
+def test_who_only_watches_has_what_they_see_and_nothing_to_set(column: Open) -> None:
     teacher = column("transform-chain/embed")
-    watcher = classroom.enter()
-    watcher.open_column(teacher.watch_link)
+    watcher = column(teacher.watch_link)
     locked = ".s3-controls :is(input, select, [data-act], [data-nudge])"
     watcher.until(lambda: all(n.is_disabled() for n in watcher.frame.locator(locked).all()))
     teacher.press("Add link")

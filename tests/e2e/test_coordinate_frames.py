@@ -102,7 +102,7 @@ def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> No
 
 
 def test_each_control_of_coordinate_frames_answers(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed")
+    learner = classroom.open_column("coordinate-frames/embed")
     learner.type("point", "-0.5", box=1)
     learner.type("point", "0.25", box=3)
     agree(learner, point=[-0.5, 0.8, 0.25])
@@ -126,7 +126,7 @@ def test_each_control_of_coordinate_frames_answers(classroom: Classroom) -> None
 
 
 def test_w_goes_to_zero(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed?point=0,0,1")
+    learner = classroom.open_column("coordinate-frames/embed?point=0,0,1")
     learner.type("w", "0.5")
     np.testing.assert_allclose(agree(learner, w=0.5)["point_world"], [0, -2, 0], atol=1e-12)
     learner.type("w", "0.1")

@@ -48,7 +48,7 @@ def middle(learner: Learner, name: str) -> tuple[float, float]:
 
 
 def test_a_click_in_a_picture_and_arrow_keys_pick_a_pixel_whose_line_appears_in_the_other(classroom: Classroom) -> None:
-    learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
+    learner = classroom.open_column("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
     agree(learner)
     frame = box(learner.frame.locator('svg[data-pane="right"]'))
     learner.page.mouse.click(frame["x"] + frame["width"] * 0.25, frame["y"] + frame["height"] * 0.75)
@@ -108,7 +108,7 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
 
 
 def test_presets_and_controls_answer(classroom: Classroom) -> None:
-    learner = classroom.open("epipolar/embed?theme=light", reduced_motion="reduce")
+    learner = classroom.open_column("epipolar/embed?theme=light", reduced_motion="reduce")
     learner.press("Forward motion")
     solution = agree(learner, left=[0, -0.6, 1], right=[0, 0.9, 1])
     assert solution["epipole_left_pixel"] == pytest.approx([320, 240])
@@ -134,7 +134,7 @@ def test_presets_and_controls_answer(classroom: Classroom) -> None:
 
 
 def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classroom) -> None:
-    learner = classroom.open("epipolar/embed?left=0,0,1&right=0.01,0,1")
+    learner = classroom.open_column("epipolar/embed?left=0,0,1&right=0.01,0,1")
     learner.type("right", "0", box=1)
     solution = agree(learner, right=[0, 0, 1])
     assert solution["F"] is None
@@ -180,7 +180,7 @@ def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(clas
 
 
 def test_a_click_on_a_point_in_a_picture_picks_its_very_pixel_and_selects_it(classroom: Classroom) -> None:
-    learner = classroom.open("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
+    learner = classroom.open_column("epipolar/embed?left_pan=-18&right_pan=18&left=-1.2,0.4,1&right=1.2,0.4,1")
     before = agree(learner, pick=None)
     spot = box(learner.frame.locator('svg[data-pane="left"] [data-link="2"] .s3-reach'))
     learner.page.mouse.click(spot["x"] + 0.7 * spot["width"], spot["y"] + 0.6 * spot["height"])

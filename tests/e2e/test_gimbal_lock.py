@@ -68,7 +68,7 @@ def test_sliders_turn_the_rings_and_colours_are_where_their_axes_are(classroom: 
 
 
 def test_lock_is_shown_said_and_left(classroom: Classroom) -> None:
-    learner = classroom.open("gimbal-lock/embed?yaw=30&roll=10")
+    learner = classroom.open_column("gimbal-lock/embed?yaw=30&roll=10")
     learner.type("pitch", "80")
     agree(learner, pitch=80)
     learner.says("Near gimbal lock")
@@ -89,7 +89,7 @@ def test_lock_is_shown_said_and_left(classroom: Classroom) -> None:
 
 
 def test_the_same_motion_plays_and_the_aircraft_returns(classroom: Classroom) -> None:
-    learner = classroom.open("gimbal-lock/embed?pitch=90", size=SMALL)
+    learner = classroom.open_column("gimbal-lock/embed?pitch=90", size=SMALL)
     start = learner.scene.world_pose(INNER)[:3, :3]
     gaps: list[float] = []
     learner.press("Show the same motion")
@@ -107,7 +107,7 @@ def test_the_same_motion_plays_and_the_aircraft_returns(classroom: Classroom) ->
 
 
 def test_trying_the_lost_axis_steps_under_reduced_motion_and_stops_at_a_touch(classroom: Classroom) -> None:
-    learner = classroom.open("gimbal-lock/embed?pitch=90", size=SMALL, reduced_motion="reduce")
+    learner = classroom.open_column("gimbal-lock/embed?pitch=90", size=SMALL, reduced_motion="reduce")
     learner.press("Try to turn about the lost axis")
     learner.until(lambda: learner.params["ghost"] == [90, 60, 90])
     assert (learner.params["yaw"], learner.params["pitch"], learner.params["roll"]) == (0, 90, 0), "no ring moves"

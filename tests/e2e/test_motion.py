@@ -17,8 +17,8 @@ def progress(learner: Learner, since: int = 0) -> list[float]:
 
 
 def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classroom) -> None:
-    learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL)
-    watcher = classroom.open(learner.room, size=SMALL)
+    learner = classroom.open_column("euler-angles/embed?yaw=90", size=SMALL)
+    watcher = classroom.open_column(learner.room, size=SMALL)
     watcher.sees(yaw=90)
     turned: list[float] = []
     learner.press("Animate sequence")
@@ -55,7 +55,7 @@ def test_an_animation_plays_and_stops_at_the_touch_of_a_slider(classroom: Classr
 
 
 def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
-    learner = classroom.open("euler-angles/embed?yaw=90", size=SMALL, reduced_motion="reduce")
+    learner = classroom.open_column("euler-angles/embed?yaw=90", size=SMALL, reduced_motion="reduce")
     since = len(learner.sockets.states)
     learner.press("Animate sequence")
     learner.until(lambda: learner.params["progress"] == 0)

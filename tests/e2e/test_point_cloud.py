@@ -39,7 +39,7 @@ def layers(learner: Learner) -> list[str]:
 
 
 def test_voxels_thin_the_cloud_and_zero_brings_it_back(classroom: Classroom) -> None:
-    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5", size=SMALL)
     few = agree(learner, voxel_size=0.5)
     assert few["points_out"] < 1_000
     learner.press_keys("voxel_size", "ArrowLeft", "ArrowLeft")
@@ -71,7 +71,9 @@ def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
 
 
 def test_a_registration_is_stepped(classroom: Classroom) -> None:
-    learner = classroom.open("point-cloud/embed?dataset=two-scans&voxel_size=0.1&process=register&step=0", size=SMALL)
+    learner = classroom.open_column(
+        "point-cloud/embed?dataset=two-scans&voxel_size=0.1&process=register&step=0", size=SMALL
+    )
     before = agree(learner, step=0)["registration"]
     learner.press("Next step")
     learner.press("Next step")
@@ -84,7 +86,7 @@ def test_a_registration_is_stepped(classroom: Classroom) -> None:
 
 def test_long_work_says_how_far_it_is_and_is_cancelled(classroom: Classroom, tmp_path: Path) -> None:
     """The worst of clouds, all in one place, takes seconds on any machine."""
-    learner = classroom.open("point-cloud/embed?voxel_size=0.5&neighbors=5", size=SMALL)
+    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5&neighbors=5", size=SMALL)
     path = tmp_path / "one place.ply"
     path.write_bytes(ply_bytes(Cloud("", np.ones((500_000, 3)))))
     bring(learner, path)
@@ -117,8 +119,8 @@ def bring(learner: Learner, path: Path) -> None:
 
 
 def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_path: Path) -> None:
-    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
-    other = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    other = classroom.open_column("point-cloud/embed?voxel_size=0.5", size=SMALL)
     points = np.array([[0.0, 0.0, 0.0], [2.0, 1.0, 0.5]])
     path = tmp_path / "my scan.ply"
     path.write_bytes(ply_bytes(Cloud("", points, RED_AND_BLUE)))
@@ -147,7 +149,8 @@ def agree_on_file(learner: Learner) -> dict[str, Any]:
 
 
 def test_a_file_that_takes_long_is_given_up(classroom: Classroom, tmp_path: Path) -> None:
-    learner = classroom.open("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    learner = classroom.enter(size=SMALL)
+    learner.open_column("point-cloud/embed?voxel_size=0.5")
     path = tmp_path / "long.xyz"
     path.write_text("0 0 0\n" * 100_000)
     slow = {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": 20_000}
@@ -175,6 +178,6 @@ def test_a_file_is_brought_in_a_sandboxed_frame(classroom: Classroom, tmp_path: 
 
 @pytest.mark.parametrize("query", ["dataset=file&file=upload-of-yesterday"])
 def test_a_file_that_is_gone_is_said_in_words(classroom: Classroom, query: str) -> None:
-    learner = classroom.open(f"point-cloud/embed?{query}", size=SMALL)
+    learner = classroom.open_column(f"point-cloud/embed?{query}", size=SMALL)
     learner.until(lambda: "gone" in learner.sockets.column.html("read"))
     assert not layers(learner)

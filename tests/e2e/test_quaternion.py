@@ -70,7 +70,7 @@ def test_the_axis_is_dragged_in_the_scene_and_the_object_turns_with_it(classroom
 
 
 def test_turns_are_composed_and_undone(classroom: Classroom) -> None:
-    learner = classroom.open("quaternion/embed?axis=1,0,0")
+    learner = classroom.open_column("quaternion/embed?axis=1,0,0")
     learner.press_keys("angle", "ArrowRight", "ArrowLeft", "ArrowRight")
     agree(learner, angle=91)
     learner.type("angle", "90")
@@ -101,7 +101,7 @@ def test_turns_are_composed_and_undone(classroom: Classroom) -> None:
 
 
 def test_a_zero_axis_is_refused_and_the_picture_stays(classroom: Classroom) -> None:
-    learner = classroom.open("quaternion/embed?axis=0,0,2&angle=60")
+    learner = classroom.open_column("quaternion/embed?axis=0,0,2&angle=60")
     solution = agree(learner, axis=[0, 0, 2])
     learner.says("has length 2.00")
     learner.type("axis", "0", box=3)

@@ -40,8 +40,8 @@ def same_scene(a: Learner, b: Learner) -> None:
 
 
 def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom) -> None:
-    ada = classroom.open("euler-angles/embed?yaw=45")
-    bob = classroom.open("euler-angles/embed?yaw=45")
+    ada = classroom.open_column("euler-angles/embed?yaw=45")
+    bob = classroom.open_column("euler-angles/embed?yaw=45")
     assert ada.room != bob.room
     before = bob.scene.messages
 
@@ -58,8 +58,8 @@ def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom
 
 def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom: Classroom) -> None:
     teacher = classroom.open("euler-angles/embed?yaw=70")
-    helper = classroom.open(teacher.room)
-    watcher = classroom.open(teacher.watch_link)
+    helper = classroom.open_column(teacher.room)
+    watcher = classroom.open_column(teacher.watch_link)
     helper.sees(yaw=70)
     watcher.sees(yaw=70)
 
@@ -90,7 +90,7 @@ def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom:
 
 def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themselves(classroom: Classroom) -> None:
     teacher = classroom.open("camera/embed")
-    watcher = classroom.open(teacher.watch_link)
+    watcher = classroom.open_column(teacher.watch_link)
 
     def lit(learner: Learner, name: str) -> None:
         learner.until(lambda: learner.lights(name, "g tr" if name else ""))

@@ -81,7 +81,7 @@ def shown(learner: Learner) -> None:
 
 
 def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) -> None:
-    learner = classroom.open("transform-chain/embed?angles=10,20,30&swap=2")
+    learner = classroom.open_column("transform-chain/embed?angles=10,20,30&swap=2")
     learner.press("Add link")
     agree(learner, angles=[10, 20, 30, 0], lengths=[1, 0.8, 0.5, 0.4], axes="zyyy", swap=2)
     learner.press_keys("angles.3", "ArrowLeft")
@@ -121,7 +121,7 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
 
 
 def test_a_joint_is_swept_and_stops_at_the_first_touch(classroom: Classroom) -> None:
-    learner = classroom.open("transform-chain/embed?trace=2")
+    learner = classroom.open_column("transform-chain/embed?trace=2")
     learner.press("Sweep joint")
     learner.until(lambda: learner.params["angles"][1] != 40)
     learner.press_keys("angles.0", "ArrowRight")

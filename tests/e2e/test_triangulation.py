@@ -117,7 +117,7 @@ def shown(learner: Learner) -> None:
 
 
 def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
-    learner = classroom.open("triangulation/embed")
+    learner = classroom.open_column("triangulation/embed")
     frame = learner.frame
     scale = box(frame.locator("svg[data-pane=left]"))["width"] / 640
     core = box(frame.locator("[data-handle=left_uv] .s3-core"))
@@ -143,7 +143,7 @@ def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
 
 
 def test_each_control_of_triangulation_answers(classroom: Classroom) -> None:
-    learner = classroom.open("triangulation/embed")
+    learner = classroom.open_column("triangulation/embed")
     learner.press_keys("baseline", "ArrowRight")
     first = agree(learner, baseline=0.61)
     learner.type("focal", "800")
@@ -188,7 +188,7 @@ def solved_at(learner: Learner, x: float) -> list[float]:
 
 
 def test_parallel_rays_are_said_where_they_happen(classroom: Classroom) -> None:
-    learner = classroom.open("triangulation/embed?right_uv=409,210")
+    learner = classroom.open_column("triangulation/embed?right_uv=409,210")
     learner.frame.locator("[data-handle=right_uv]").press("ArrowRight")
     solution = agree(learner, left_uv=[410, 210], right_uv=[410, 210])
     assert solution["point"] is None
