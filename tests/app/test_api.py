@@ -19,6 +19,7 @@ from sims.kit.sim import Sim, jsonable
 from sims.kit.spelling import clipped
 from tests.app.bad_values import HOSTILE, JSON, JSON_NAMES, LINK, LINK_NAMES
 from tests.app.conftest import Local
+from tests.per_sim import per_sim
 from tests.schema import wrong
 from tests.server import wait_for
 from tests.sims.cases import FEW, FEW_NAMES
@@ -98,7 +99,7 @@ def test_health(http: httpx.Client) -> None:
 # ---- solving
 
 
-@pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
+@per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
 def test_solve_answers_what_the_sim_solves(http: httpx.Client, sim: AnySim, name: str, params: Any) -> None:
     sent = params.model_dump(mode="json")
     answer = http.post(f"/api/sims/{sim.slug}/solve", json=sent)
@@ -147,7 +148,7 @@ def complaints(answer: httpx.Response) -> list[dict[str, Any]]:
     return details
 
 
-@pytest.mark.parametrize(("sim", "name", "value"), JSON, ids=JSON_NAMES)
+@per_sim(("sim", "name", "value"), JSON, JSON_NAMES)
 def test_bad_parameter_is_named(http: httpx.Client, sim: AnySim, name: str, value: Any) -> None:
     body = json.dumps({name: value})
     answer = http.post(f"/api/sims/{sim.slug}/solve", content=body, headers={"content-type": "application/json"})
@@ -235,7 +236,7 @@ def test_switches_are_true_or_false(http: httpx.Client, sim: AnySim) -> None:
                 assert (detail["parameter"], detail["allowed"]) == (name, "true or false")
 
 
-@pytest.mark.parametrize(("sim", "name", "value"), JSON, ids=JSON_NAMES)
+@per_sim(("sim", "name", "value"), JSON, JSON_NAMES)
 def test_what_is_wrong_stands_in_fields(http: httpx.Client, sim: AnySim, name: str, value: Any) -> None:
     details = complaints(post(http, sim, json.dumps({name: value})))
     assert name in {detail["parameter"] for detail in details}
@@ -358,7 +359,7 @@ def test_what_fails_on_the_server_is_said_too(monkeypatch: pytest.MonkeyPatch) -
 # ---- what a solution is
 
 
-@pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
+@per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
 def test_a_solution_is_what_its_schema_says(sim: AnySim, name: str, params: Any) -> None:
     schema = solution_schema(api.solved(sim))
     assert not list(wrong(jsonable(sim.solve(params)), schema))
@@ -386,7 +387,7 @@ def test_the_schema_is_told_and_says_what_is_what(http: httpx.Client, sim: AnySi
 
 
 @pytest.mark.parametrize("path", ["", "/embed"], ids=["page", "embed"])
-@pytest.mark.parametrize(("sim", "name", "text"), LINK, ids=LINK_NAMES)
+@per_sim(("sim", "name", "text"), LINK, LINK_NAMES)
 def test_bad_link_names_the_parameter_the_value_and_what_is_allowed(
     http: httpx.Client, sim: AnySim, name: str, text: str, path: str
 ) -> None:

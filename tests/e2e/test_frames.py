@@ -147,7 +147,7 @@ def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom, re
 
 
 def test_a_bad_file_that_is_dropped_is_spoken_of_where_it_can_be_seen(classroom: Classroom) -> None:
-    learner = classroom.open("point-cloud/embed", size={"width": 880, "height": 600})
+    learner = classroom.open_column("point-cloud/embed")
     learner.witness.expect("status of 422")
     assert not learner.page.locator(".s3-upload").is_visible()
     learner.page.evaluate(DROP)

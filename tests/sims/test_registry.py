@@ -21,6 +21,7 @@ from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Slider, Sw
 from sims.kit.params import Params
 from sims.kit.sim import Sim, jsonable
 from tests.frames import differences
+from tests.per_sim import per_sim
 from tests.server import Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
 from tests.sims.contract import contract_of
@@ -31,8 +32,8 @@ MOST_LABELS = 7
 MODELS: dict[str, type[Params]] = {sim.slug: sim.params for sim in SIMS}
 NUMERIC = {slug: model.numeric for slug, model in MODELS.items()}
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
-each_state = pytest.mark.parametrize(("sim", "name", "params"), ALL, ids=NAMES)
-few_states = pytest.mark.parametrize(("sim", "name", "params"), FEW, ids=FEW_NAMES)
+each_state = per_sim(("sim", "name", "params"), ALL, NAMES)
+few_states = per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
 
 
 @pytest.fixture(scope="module")
