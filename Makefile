@@ -44,7 +44,7 @@ test: $(VENV)/test.stamp
 	@echo "Running the tests without a browser"
 	@$(BIN) -m pytest -m "not e2e" --numprocesses auto $(ARGS) || $(NONE_CHOSEN)
 	@echo "Running the tests in a browser"
-	@$(BIN) -m pytest -m e2e $(ARGS) || $(NONE_CHOSEN)
+	@$(BIN) -m pytest -m e2e --numprocesses auto --maxprocesses 4 --dist worksteal $(ARGS) || $(NONE_CHOSEN)
 
 fuzz: $(VENV)/test.stamp
 	@echo "Looking for examples that break a property"
