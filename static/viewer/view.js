@@ -59,6 +59,17 @@ export class View {
     scene.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && (scene.dataset.shared = ""));
     document.addEventListener("pointerdown", (event) => scene.contains(event.target) || (scene.dataset.shared = ""));
     scene.addEventListener("pointercancel", () => this.say("Tap the scene to turn it; two fingers zoom"));
+    this.passBy();
+  }
+
+  // One finger on its way past the frame turns nothing before the browser takes it for scrolling; two mean the scene.
+  passBy() {
+    const fingers = new Set();
+    addEventListener("pointerdown", (event) => event.pointerType === "touch" && fingers.add(event.pointerId), true);
+    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => fingers.delete(event.pointerId), true);
+    addEventListener("pointermove", (event) => {
+      if (fingers.size === 1 && "shared" in scene.dataset && scene.contains(event.target)) event.stopPropagation();
+    }, true);
   }
 
   say(words) {

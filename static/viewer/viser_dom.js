@@ -32,6 +32,7 @@ export function prepare(view, looked, blind) {
   document.hasFocus = () => document.visibilityState === "visible";
   noticeBlindness(blind);
   keepKeys();
+  freeFingers();
   adopt(looked);
 }
 
@@ -55,6 +56,13 @@ function keepKeys() {
   const listen = document.addEventListener.bind(document);
   document.addEventListener = (kind, take, options) =>
     listen(kind, kind === "keydown" && !options ? (event) => document.activeElement === sceneCanvas() && take(event) : take, options);
+}
+
+// A browser lets the canvas capture each finger by itself. viser then takes the tap for the drag of a handle, and drops it.
+function freeFingers() {
+  scene.addEventListener("pointerdown", ({ target, pointerId, pointerType }) => {
+    if (pointerType === "touch" && target.hasPointerCapture(pointerId)) target.releasePointerCapture(pointerId);
+  }, true);
 }
 
 // viser publishes its state for its own tests, when the canvas is there.

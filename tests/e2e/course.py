@@ -11,7 +11,8 @@ from typing import Any, Self
 from tests.e2e.learner import Learner
 from tests.frames import Message
 
-PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Week 3: rotations</title>
+PAGE = """<!doctype html><html lang="en"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1"><title>Week 3: rotations</title>
 <link rel="icon" href="data:,">
 <script>
   const heard = [];
@@ -19,7 +20,7 @@ PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Week 3: ro
   const say = (message) => document.querySelector("iframe").contentWindow.postMessage(message, "*");
 </script>
 <h1>Week 3: rotations</h1>
-{before}<iframe title="A sim" width="700" height="600" style="border: 0" src="{address}" {attributes}></iframe></html>"""
+{before}<iframe title="A sim" width="700" height="600" style="border: 0" src="{address}" {attributes}></iframe>{after}</html>"""
 
 
 class CourseSite:
@@ -59,10 +60,10 @@ class CourseSite:
     def url(self) -> str:
         return f"http://localhost:{self._server.server_port}/"
 
-    def show(self, learner: Learner, path: str, attributes: str = "", *, before: str = "") -> None:
-        """Open the course page with a sim of the learner's server in its frame, after some more of the page."""
+    def show(self, learner: Learner, path: str, attributes: str = "", *, before: str = "", after: str = "") -> None:
+        """Open the course page with a sim of the learner's server in its frame, amid some more of the page."""
         address = escape(f"{learner.url}/sims/{path}")
-        self.page = PAGE.format(address=address, attributes=attributes, before=before)
+        self.page = PAGE.format(address=address, attributes=attributes, before=before, after=after)
         learner.page.goto(self.url)
 
 

@@ -133,6 +133,32 @@ def said(learner: Learner, **words: Any) -> bool:
     return any(words.items() <= message.items() for message in learner.page.evaluate("heard"))
 
 
+def test_a_wheel_scrolls_the_course_page_past_a_frame_until_the_scene_is_clicked(
+    classroom: Classroom, course: CourseSite
+) -> None:
+    learner = classroom.enter()
+    course.show(learner, "euler-angles/embed", after="<p>After</p>" * 60)
+    learner.enter_frame()
+    distance = away(learner)
+    at = learner.page.locator("iframe").bounding_box()
+    assert at is not None
+    mouse = learner.page.mouse
+    mouse.move(at["x"] + 80, at["y"] + 200)
+    mouse.wheel(0, 60)
+    learner.until(lambda: learner.page.evaluate("scrollY") == 60)
+    learner.frame.get_by_text("Click the scene, or hold Ctrl").wait_for()
+    assert away(learner) == pytest.approx(distance)
+    learner.page.keyboard.down("Control")
+    mouse.wheel(0, -200)
+    learner.page.keyboard.up("Control")
+    learner.until(lambda: away(learner) < 0.99 * distance)
+    nearer = away(learner)
+    mouse.click(at["x"] + 80, at["y"] + 200)
+    mouse.wheel(0, 200)
+    learner.until(lambda: away(learner) > 1.01 * nearer)
+    assert learner.page.evaluate("scrollY") == 60
+
+
 @pytest.mark.parametrize("reason", ["This server saw Host “backend:8000”, but the page comes from elsewhere.", ""])
 def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom, reason: str) -> None:
     learner = classroom.enter()
