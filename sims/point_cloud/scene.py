@@ -47,6 +47,12 @@ class CloudScene:
         self.names = [stage.label(f"/name{k}", "", anchor="bottom-center") for k in range(NAMES)]
         self._view: View | None = None
         stage.rays("/cloud")
+        for name in ("process", "step"):
+            stage.linked(name, self.links, self.plane.rim)
+        stage.linked("distance", self.plane.rim)
+        stage.linked("deviations", self.marked.dots)
+        for name in ("show_normals", "neighbors"):
+            stage.linked(name, self.base.arrows, self.marked.arrows)
 
     def draw(self, p: CloudParams, s: CloudSolution) -> None:
         view = s.drawn.view
@@ -114,6 +120,7 @@ class Box:
     def __init__(self, stage: Stage) -> None:
         self.node = stage.group("/box")
         self.edges = stage.lines("/box/edges", "ghost", width=1.5)
+        stage.linked("show_box", self.edges)
         self.labels = [stage.label(f"/box/{axis}", "", anchor=anchor) for axis, anchor in ANCHORS.items()]
 
     def draw(self, low: Array, high: Array, visible: bool) -> None:
@@ -148,6 +155,7 @@ class Ring:
             stage.mesh(f"/selected/ring{k}", ring.copy().apply_transform(turn), "held") for k, turn in enumerate(turns)
         ]
         self.normal = stage.lines("/selected/normal", "held", width=3.0)
+        stage.linked("selected", self.normal)
         self.label = stage.label("/selected/label", "", anchor="bottom-left")
 
     def draw(self, selected: Selected | None, radius: float) -> None:

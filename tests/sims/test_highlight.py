@@ -15,7 +15,8 @@ LINKED = [
     ("transform-chain", "show", "/transforms"),
     ("camera", "fx", "/camera/frustum"), ("camera", "tilt", "/camera/axis"), ("epipolar", "point", "/rays"),
     ("epipolar", "left_pan", "/left/frustum"), ("triangulation", "baseline", "/baseline"),
-    ("triangulation", "focal", "/left/frustum"),
+    ("triangulation", "focal", "/left/frustum"), ("point-cloud", "show_box", "/box/edges"),
+    ("point-cloud", "deviations", "/marked/points"), ("point-cloud", "neighbors", "/cloud/normals"),
 ]  # fmt: skip
 
 
@@ -25,7 +26,7 @@ def test_what_a_control_moves_stands_out_while_it_is_pointed_at(slug: str, name:
     assert sim is not None
     assert not sim.params.kinds[name].hidden
     with Rig(sim) as rig:
-        before, thick = rig.model.snapshot(), ("thickness", "shaft_radius")
+        before, thick = rig.model.snapshot(), ("thickness", "shaft_radius", "point_size")
 
         def width() -> float:
             return float(next(rig.model.node(node).props[key] for key in thick if key in rig.model.node(node).props))
@@ -42,5 +43,5 @@ def test_what_a_control_moves_stands_out_while_it_is_pointed_at(slug: str, name:
         assert not differences(before, rig.model.snapshot())
 
 
-def test_most_sims_have_something_to_show() -> None:
-    assert {slug for slug, *_ in LINKED} == {sim.slug for sim in SIMS} - {"point-cloud"}
+def test_every_sim_has_something_to_show() -> None:
+    assert {slug for slug, *_ in LINKED} == {sim.slug for sim in SIMS}

@@ -16,7 +16,7 @@ from sims.kit.types import Segment, Vector
 from sims.kit.viser_internals import send_pose, set_pose, set_property, set_visible
 
 STRESS = 2.0
-"""How much thicker lines and arrows are while they are highlighted."""
+"""How much thicker lines, arrows and dots are while they are highlighted."""
 HEAD_RADIUS, HEAD_LENGTH = 2.6, 7.0
 """Size of an arrow's head, in radii of its shaft."""
 
@@ -103,6 +103,15 @@ class Solid(Node):
 class Cloud(Node):
     """Many dots, of one colour or each of its own."""
 
+    def __init__(self, handle: Any) -> None:
+        super().__init__(handle)
+        self._size = float(handle.point_size)
+        self._stress = 1.0
+
+    def stress(self, on: bool) -> None:
+        self._stress = STRESS if on else 1.0
+        self.size(self._size)
+
     def points(self, points: npt.NDArray[np.float64]) -> None:
         """Move the dots to places (n, 3)."""
         if self.differs("points", points):
@@ -116,7 +125,8 @@ class Cloud(Node):
 
     def size(self, metres: float) -> None:
         """Diameter of each dot."""
-        self._assign("point_size", metres)
+        self._size = metres
+        self._assign("point_size", metres * self._stress)
 
 
 class Lines(Node):
