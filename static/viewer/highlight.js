@@ -1,6 +1,6 @@
 // What stands for the same thing in controls, pictures, formulas and tables is highlighted together, in the scene too; a
 // click on a point or its row selects it.
-import { sim } from "./page.js";
+import { column, scene, sim } from "./page.js";
 
 const SELECTS = ".s3-point, tr:has(button), [data-handle]";
 
@@ -13,11 +13,14 @@ export class Highlight {
     this.channel = channel;
     this.mine = ""; // what the pointer or the focus is on
     this.theirs = ""; // what somebody else in the room hovers over
+    this.grips = false; // whether something may be dragged in the scene
   }
 
   // `held()` says that a handle is dragged: it stays highlighted, wherever the pointer is.
   listen(held) {
-    document.addEventListener("pointerover", (event) => held() || this.hover(event.target));
+    document.addEventListener("pointerover", (event) => held() || this.grips || this.hover(event.target));
+    scene.addEventListener("pointerdown", () => (this.grips = true), true);
+    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => this.letGo(), true);
     document.addEventListener("focusin", (event) => this.hover(event.target));
     // A finger has left when it is lifted; what it touched stays highlighted until it touches something else.
     document.documentElement.addEventListener("pointerleave", (event) => event.pointerType === "touch" || this.hover(null));
@@ -35,6 +38,17 @@ export class Highlight {
     this.mine = name;
     this.show();
     this.channel.send({ type: "point", name });
+  }
+
+  // What is dragged in the scene moves a control: it is highlighted until the hand lets go.
+  moved(inputs) {
+    const [name] = this.grips ? inputs : [];
+    if (name) this.hover(column.querySelector(`[data-control="${CSS.escape(name.replace(/\.\d+$/, ""))}"]`));
+  }
+
+  letGo() {
+    if (this.grips) this.hover(null);
+    this.grips = false;
   }
 
   others(name) {

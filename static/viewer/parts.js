@@ -27,6 +27,7 @@ export class Parts {
     column.dataset.version = version;
     this.pace.answered();
     this.controls.show(values);
+    this.highlight.moved(Object.keys(values));
     if (!Object.keys(parts).length) return;
     this.handles.drawn();
     this.highlight.show();

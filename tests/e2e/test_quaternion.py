@@ -58,7 +58,10 @@ def test_the_axis_is_dragged_in_the_scene_and_the_object_turns_with_it(classroom
     mouse.move(x, y)
     mouse.down()
     mouse.move(x + 60, y + 20, steps=6)
+    control = learner.frame.locator('[data-control="axis"].s3-highlighted')
+    control.wait_for()  # what the hand moves in the scene
     mouse.up()
+    control.wait_for(state="detached")
     learner.until(lambda: learner.params["axis"] != [0, 0, 1])
     agree(learner, angle=90)
     np.testing.assert_allclose(np.linalg.norm(learner.params["axis"]), 1.0, atol=2e-3)
