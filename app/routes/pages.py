@@ -114,7 +114,7 @@ def _page(
     only = options["only"].split(",") if "only" in options else None
     solution = session.solution if session is not None and session.drawing.solved == params else None
     column = Column(sim, given.sessions.given(sim)).html(params, solution, only)
-    return rendering.viewer(request, sim, column, params, options, given.largest, room, key)
+    return rendering.viewer(request, sim, column, sim.home(params, solution), options, given.largest, room, key)
 
 
 def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:

@@ -15,9 +15,8 @@ from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
 from sims.kit.palette import DARK
-from sims.kit.params import Params
 from sims.kit.scene.view import FIELD
-from sims.kit.sim import Sim
+from sims.kit.sim import Sim, View
 
 AnySim = Sim[Any, Any]
 
@@ -71,7 +70,7 @@ def render(request: Request, template: str, status: int = 200, **context: Any) -
 
 
 def viewer(
-    request: Request, sim: AnySim, column: str, params: Params, options: dict[str, str], largest: int, room: str,
+    request: Request, sim: AnySim, column: str, view: View, options: dict[str, str], largest: int, room: str,
     key: str = "",
 ) -> Response:  # fmt: skip
     """The page of a session in a state: viser's scene beside a column of ours. Without its key it only watches.
@@ -81,7 +80,6 @@ def viewer(
     place = f"{base(request)}/sims/{sim.slug}"
     path = f"{place}/s/{room}/{key}/" if key else f"{place}/s/{room}/"
     client = f"{base(request)}/viser/{viser_client.fingerprint()}"
-    view = sim.view if sim.view_of is None else sim.view_of(params)
     data = {
         "slug": sim.slug, "title": sim.title, "watching": not key,
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,

@@ -89,9 +89,10 @@ class Commands:
         """Press a button."""
         self.attempt(self._session.act, name)
 
-    def home(self, position: Vector, look_at: Vector, radius: float) -> None:
-        """Tell the page that the scene is looked at from elsewhere at first, from now on."""
-        self._answer({"type": "home", "view": [*map(float, position), *map(float, look_at)], "radius": float(radius)})
+    def home(self, position: Vector, look_at: Vector, radius: float, *, moved: bool = True) -> None:
+        """Tell the page from where the scene is looked at by itself from now on, and whether its camera is there."""
+        view = [*map(float, position), *map(float, look_at)]
+        self._answer({"type": "home", "view": view, "radius": float(radius), "moved": moved})
 
     def select(self, name: str) -> None:
         """Select what is linked under a name."""

@@ -10,7 +10,7 @@ from sims.camera import actions
 from sims.camera.panes import panes
 from sims.camera.params import CameraParams
 from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
-from sims.camera.scene import CameraScene
+from sims.camera.scene import CameraScene, seen
 from sims.camera.solution import CameraSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
 
@@ -34,6 +34,7 @@ SIM = Sim(
     folds=(WORKED, ALL, MATRIX,),
     describe=describe,
     view=View((-4.28, -7.87, 4.4), (0.05, -0.37, -0.6), 3.3),
+    seen=seen,
     panes=panes,
     actions=(
         Action(

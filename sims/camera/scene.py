@@ -24,6 +24,11 @@ SIGHTS = ("x", "y", "z")
 NOTHING: Array = np.zeros((4, 3))
 
 
+def seen(p: CameraParams, s: CameraSolution) -> list[npt.ArrayLike]:
+    """What must be in sight."""
+    return [p.position]
+
+
 class CameraScene:
     """Everything in the street keeps its place; all that belongs to the camera hangs on one node."""
 

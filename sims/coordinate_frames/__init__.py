@@ -8,7 +8,7 @@ from __future__ import annotations
 from sims.coordinate_frames import actions
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import ALL, AXES, HOMOGENEOUS, caption, describe, readouts
-from sims.coordinate_frames.scene import FramesScene
+from sims.coordinate_frames.scene import FramesScene, seen
 from sims.coordinate_frames.solution import FramesSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
 
@@ -32,6 +32,7 @@ SIM = Sim(
     folds=(HOMOGENEOUS, ALL, AXES,),
     describe=describe,
     view=View((-2.7, -3.5, 2.15), (0.0, 0.0, 0.0), 1.85),
+    seen=seen,
     actions=(
         Action("rule", "Animate the rule", "Fingers from X to Y, thumb along Z", actions.sweep),
         Action("infinity", "Let w go to 0", "The point runs away; a direction is left", actions.run_away),

@@ -20,6 +20,11 @@ LENGTH, GHOST_LENGTH = 1.25, 1.52
 """Lengths of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
 
 
+def seen(p: FramesParams, s: FramesSolution) -> list[Array]:
+    """What must be in sight."""
+    return [] if s.point_world is None else [s.point_world]
+
+
 class FramesScene:
     """The axes begin on the car's roof."""
 

@@ -10,7 +10,7 @@ from sims.epipolar import actions, plan
 from sims.epipolar.panes import panes
 from sims.epipolar.params import ESTIMATE, EpipolarParams
 from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
-from sims.epipolar.scene import EpipolarScene
+from sims.epipolar.scene import EpipolarScene, seen
 from sims.epipolar.solution import EpipolarSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
 
@@ -34,6 +34,7 @@ SIM = Sim(
     folds=(MATRICES, LINES, POINTS, ESTIMATE,),
     describe=describe,
     view=View((4.2, -3.4, 3.9), (0.1, 1.9, 1.0), 2.7),
+    seen=seen,
     panes=panes,
     actions=(
         Action("rectified", "Rectified pair", "Side by side, same direction: level lines", actions.preset("rectified")),

@@ -22,6 +22,11 @@ DROPS: Array = np.stack([OTHERS, OTHERS * (1.0, 1.0, 0.0)], axis=1)
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
+def seen(p: EpipolarParams, s: EpipolarSolution) -> list[Place]:
+    """What must be in sight."""
+    return [p.left, p.right, p.point]
+
+
 class EpipolarScene:
     """World coordinates, but for what lies on a camera's picture."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from sims.kit.offers import Offers
 from sims.kit.pane import Pane
@@ -18,6 +19,12 @@ from sims.kit.scene.stage import Stage
 
 DRAWN: Mapping[str, Any] = {"drawn": True}
 """Metadata of a Solution's field that the scene alone needs: too large to go out."""
+SPARE = 1.25
+"""How much farther than the radius of a view is still in sight: a scene is wider than it is high, or higher."""
+STEP = 1.25
+"""How much farther each step back leads: seldom, and by enough to be seen as one."""
+RUN_AWAY = 6.0
+"""Radii of the view beyond which nobody steps back for a place."""
 P = TypeVar("P", bound=Params)
 S = TypeVar("S")
 P_in = TypeVar("P_in", bound=Params, contravariant=True)
@@ -114,6 +121,13 @@ class View:
     look_at: tuple[float, float, float]
     radius: float
 
+    def holding(self, places: Iterable[npt.ArrayLike]) -> View:
+        """The same, or from so many steps farther away that these places are in sight; not those that run away."""
+        far = [math.dist(np.asarray(place, dtype=float), self.look_at) / self.radius for place in places]
+        farthest = max((distance for distance in far if distance < RUN_AWAY), default=0.0)
+        steps = max(0, math.ceil(math.log(max(farthest / SPARE, 1.0), STEP)))
+        return replace(self, radius=self.radius * STEP**steps)
+
 
 @dataclass(frozen=True)
 class Objective:
@@ -147,6 +161,8 @@ class Sim(Generic[P, S]):
     """Titles of the folds that read-outs stand in, in the order of the page; groups of controls alone come after."""
     view_of: Callable[[P], View] | None = None
     """The first view of a state, where it isn't always `view`."""
+    seen: Callable[[P, S], Iterable[npt.ArrayLike]] | None = None
+    """Places in the world that must be in sight: where a state moves them out of the view, it steps back."""
     panes: Callable[[P, S], Sequence[Pane]] | None = None
     selects: str = "selected"
     """The parameter that a click on what is linked across scene, pictures and tables sets."""
@@ -165,6 +181,11 @@ class Sim(Generic[P, S]):
     """Solving can take over 5 ms: it runs in the pool, beside the event loop, as do actions and handles."""
     ahead: Sequence[Callable[[], object]] = ()
     """Work that somebody will need soon: done one after the other when the sim was first opened on a server."""
+
+    def home(self, params: P, solution: S | None) -> View:
+        """From where a state is looked at by itself."""
+        view = self.view if self.view_of is None else self.view_of(params)
+        return view if self.seen is None or solution is None else view.holding(self.seen(params, solution))
 
 
 @dataclass(frozen=True)

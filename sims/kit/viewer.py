@@ -12,7 +12,7 @@ from geometry import GeometryError
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import Sim
+from sims.kit.sim import Sim, View
 from sims.kit.types import Place, Vector
 
 FARTHEST = 1e4
@@ -30,7 +30,7 @@ class Host(Protocol):
 
     def click(self, name: str, ray: tuple[float, ...]) -> None: ...
 
-    def home(self, position: Vector, look_at: Vector, radius: float) -> None: ...
+    def home(self, position: Vector, look_at: Vector, radius: float, *, moved: bool = True) -> None: ...
 
 
 class Viewer:
@@ -50,6 +50,7 @@ class Viewer:
         self._highlighted = ""
         self._live = False
         self._version = self._stage.group(VERSION)
+        self._home: View | None = None
 
     def draw(self, params: Params, solution: Any, version: int) -> None:
         """Show a state; only what differs is sent, in one window."""
@@ -60,6 +61,16 @@ class Viewer:
             self._live = True
             self._version.pose(position=(float(version), 0.0, 0.0))
         self.client.flush()
+        self._step_back(params, solution)
+
+    def _step_back(self, params: Params, solution: Any) -> None:
+        """Tell the page when the state needs another view; whoever chose their own keeps it."""
+        if self.sim.seen is None:
+            return
+        home = self.sim.home(params, solution)
+        if home != self._home:
+            self._home = home
+            self._host.home(home.position, home.look_at, home.radius, moved=False)
 
     def look_from(self, view: Sequence[float]) -> None:
         """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError."""

@@ -9,7 +9,7 @@ from sims.kit.sim import Contract, Objective, Sim, Typed, View
 from sims.transform_chain import actions
 from sims.transform_chain.params import POINT, ChainParams
 from sims.transform_chain.readouts import FREEDOM, INVERSE, STAGES, caption, describe, readouts
-from sims.transform_chain.scene import ChainScene
+from sims.transform_chain.scene import ChainScene, seen
 from sims.transform_chain.solution import ChainSolution, solve
 
 __all__ = ["CONTRACT", "SIM", "ChainParams", "ChainSolution", "solve"]
@@ -32,6 +32,7 @@ SIM = Sim(
     folds=(STAGES, INVERSE, POINT, FREEDOM,),
     describe=describe,
     view=View((3.05, -3.0, 1.8), (1.0, 0.35, -0.25), 1.65),
+    seen=seen,
     actions=actions.ACTIONS,
     handles={"/grip": actions.hold_end},
     typed=(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
@@ -20,6 +22,13 @@ END = 0.42
 """Length of the axes of the end effector's frame."""
 NAMED = 4
 """Arrows that are named at most."""
+
+
+def seen(p: ChainParams, s: ChainSolution) -> Iterator[npt.ArrayLike]:
+    """What must be in sight."""
+    yield from s.composed[:, :3, 3]
+    if p.target is not None:
+        yield p.target
 
 
 class ChainScene:

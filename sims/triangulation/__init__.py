@@ -11,7 +11,7 @@ from sims.triangulation import actions
 from sims.triangulation.panes import panes
 from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, SURENESS, TriangulationParams
 from sims.triangulation.readouts import METHODS, caption, describe, readouts
-from sims.triangulation.scene import TriangulationScene
+from sims.triangulation.scene import TriangulationScene, seen
 from sims.triangulation.solution import TriangulationSolution, solve
 
 __all__ = ["CONTRACT", "SIM", "TriangulationParams", "TriangulationSolution", "solve"]
@@ -34,6 +34,7 @@ SIM = Sim(
     folds=(IMAGES, METHODS, SURENESS,),
     describe=describe,
     view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
+    seen=seen,
     panes=panes,
     actions=(
         Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", actions.new_sample),

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
+import numpy as np
+
 from geometry import quaternion
+from geometry.arrays import Array
 from geometry.camera import R_WORLD_LEVEL
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.camera_figure import CameraFigure
@@ -24,6 +27,12 @@ BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
 RADIUS = 0.06
 WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
+
+
+def seen(p: TriangulationParams, s: TriangulationSolution) -> list[Array]:
+    """What must be in sight."""
+    places = [np.array([sign * p.baseline / 2, 0.0, 1.0]) for sign in (-1, 1)]
+    return places if s.target is None else [*places, s.target]
 
 
 class TriangulationScene:

@@ -41,7 +41,7 @@ class Page {
     this.does = {
       state: (message) => this.takeState(message),
       show: (message) => this.takeParts(message),
-      home: (message) => this.view.moved(message),
+      home: (message) => this.view.found(message),
       point: ({ name }) => this.highlight.others(name),
       error: (message) => this.fail(message),
       work: (message) => this.work.show(message),

@@ -27,6 +27,10 @@ export class View {
     this.home = fit();
     this.camera = this.linked ?? this.home;
     this.sizing = this.keeping = this.hinting = 0;
+    this.hands = new Set(); // pointers that are down
+    this.waiting = false; // whether the camera goes home when they are up
+    addEventListener("pointerdown", (event) => this.hands.add(event.pointerId), true);
+    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => this.lift(event), true);
     this.hint = scene.querySelector(".s3-hint");
     scene.addEventListener("click", (event) => this.look(event.target.closest?.("[data-look]")?.dataset.look));
     scene.addEventListener("pointerdown", (event) => this.press(event), { capture: true, passive: true });
@@ -64,12 +68,15 @@ export class View {
 
   // One finger on its way past the frame turns nothing before the browser takes it for scrolling; two mean the scene.
   passBy() {
-    const fingers = new Set();
-    addEventListener("pointerdown", (event) => event.pointerType === "touch" && fingers.add(event.pointerId), true);
-    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => fingers.delete(event.pointerId), true);
     addEventListener("pointermove", (event) => {
-      if (fingers.size === 1 && "shared" in scene.dataset && scene.contains(event.target)) event.stopPropagation();
+      const one = event.pointerType === "touch" && this.hands.size === 1;
+      if (one && "shared" in scene.dataset && scene.contains(event.target)) event.stopPropagation();
     }, true);
+  }
+
+  lift({ pointerId }) {
+    this.hands.delete(pointerId);
+    this.follow();
   }
 
   say(words) {
@@ -130,12 +137,22 @@ export class View {
     this.keep();
   }
 
-  // The scene has found another view of its own.
-  moved({ view, radius }) {
+  // The scene has another view of its own. Where its camera isn't there yet, it goes when no hand holds anything, and
+  // stays where somebody chose a view.
+  found({ view, radius, moved }) {
+    this.waiting = !moved && (this.waiting || this.athome);
     sim.view = view;
     sim.radius = radius;
-    this.home = this.camera = fit();
+    this.home = fit();
+    if (moved) this.camera = this.home;
+    this.follow();
     this.keep();
+  }
+
+  follow() {
+    if (!this.waiting || this.hands.size) return;
+    this.waiting = false;
+    if (!this.athome) this.goHome();
   }
 
   get athome() {

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from sims.camera.solution import LIFT
 from sims.camera.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner
+from tests.e2e.learner import Learner, box
 
 Array = npt.NDArray[np.float64]
 MARKS = """() => Object.fromEntries([...document.querySelectorAll("svg [data-link]")].map(
@@ -107,6 +107,37 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
     handle.focus()
     learner.page.keyboard.press("Shift+ArrowRight")
     agree(learner, cx=330)
+
+
+def test_the_view_steps_back_for_a_camera_that_leaves_it_and_keeps_what_somebody_chose(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed")
+
+    def away() -> float:
+        camera = learner.sockets.camera
+        return float(np.linalg.norm(np.subtract(camera["position"], camera["look_at"])))
+
+    first = away()
+    learner.type("position", "-9", box=2)
+    learner.until(lambda: away() > 1.2 * first)
+    farther = away()
+    x, y = learner.place_of("/camera")
+    assert x > 0
+    assert y > 0
+    assert "view" not in learner.address
+    learner.press("Reset")
+    learner.until(lambda: away() < 1.01 * first)
+
+    canvas = box(learner.frame.locator("canvas[data-engine]"))
+    learner.pull((canvas["x"] + 30, canvas["y"] + 30), 60, 10)
+    learner.until(lambda: "view" in learner.address)
+    chosen = learner.sockets.camera["position"]
+    learner.type("position", "-9", box=2)
+    agree(learner, position=[0, -9, 1.2])
+    learner.page.wait_for_timeout(300)
+    np.testing.assert_allclose(learner.sockets.camera["position"], chosen, atol=1e-6)
+    learner.press("Home view")
+    learner.until(lambda: abs(away() - farther) < 0.01)
+    learner.until(lambda: "view" not in learner.address)
 
 
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:

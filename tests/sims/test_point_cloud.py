@@ -219,7 +219,7 @@ def test_the_page_hears_of_the_view_that_another_cloud_has(rig: Rig) -> None:
     show(rig, dataset="statue")
     view = VIEWS["statue"]
     home = [message for message in rig.browser.told if message["type"] == "home"][-1]
-    assert home == {"type": "home", "view": [*view.position, *view.look_at], "radius": view.radius}
+    assert home == {"type": "home", "view": [*view.position, *view.look_at], "radius": view.radius, "moved": True}
     position, middle = (
         np.array(rig.model.latest[f"SetCamera{what}Message"][name])
         for what, name in (("Position", "position"), ("LookAt", "look_at"))
