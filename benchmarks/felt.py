@@ -2,7 +2,7 @@
 
 Each input is timed from its own event: until a number beside the scene has changed, and until a scene that was drawn
 after it is on the screen (two animation frames later). Beside them stand what the page's main thread does for one
-input, and how often it lays the page out.
+input, and how often it lays the page out; and the same sim's sliders as viser alone has them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, CDPSession, Locator, Page, sync_playwright
 
-from benchmarks.servers import SLUG, Sim3
+from benchmarks.servers import SLUG, Plain, Sim3
 from sims import SIMS
 from tests.browser import launch_options
 
@@ -25,7 +25,7 @@ WATCH = """
   for (const kind of ["keydown", "pointermove", "touchmove"]) addEventListener(kind, (event) => {
     if (felt.armed) Object.assign(felt, { armed: false, at: event.timeStamp, numbers: 0, frame: 0 });
   }, { capture: true, passive: true });
-  const words = () => document.querySelector(".s3-column")?.textContent ?? "";
+  const words = () => document.querySelector(".s3-column, .numbers")?.textContent ?? "";
   let last = "";
   new MutationObserver(() => {
     if (!felt.at || felt.numbers) last = words();
@@ -44,6 +44,7 @@ WATCH = """
   }
 })();
 """
+LIVE = "window.sim3?.live || document.querySelector('.numbers td')"
 SIZE: Any = {"width": 1280, "height": 800}
 REST = 700
 """Milliseconds between two inputs, in which all comes to rest."""
@@ -57,9 +58,9 @@ class Hand:
         self.page = page
         page.add_init_script(WATCH)
         page.goto(address, wait_until="commit", timeout=PATIENCE)
-        page.wait_for_function("window.sim3?.live", timeout=PATIENCE, polling=100)
+        page.wait_for_function(LIVE, timeout=PATIENCE, polling=100)
         page.wait_for_timeout(2500)
-        self.slider = page.locator("[data-slide]").first
+        self.slider = page.locator("[data-slide], [role=slider]").first
         self._cdp: CDPSession = page.context.new_cdp_session(page)
         self._cdp.send("Performance.enable")
 
@@ -116,9 +117,7 @@ class Hand:
         self._cdp.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
 
     def _middle(self, held: Locator) -> tuple[float, float]:
-        held.scroll_into_view_if_needed()
-        box = held.bounding_box()
-        assert box is not None
+        box = held.evaluate("n => (n.scrollIntoView({ block: 'nearest' }), n.getBoundingClientRect().toJSON())")
         share = held.evaluate("n => n.dataset.slide ? (n.value - n.min) / (n.max - n.min) : 0.5")
         inset = 8.0 if held.evaluate("n => !!n.dataset.slide") else 0.0
         return box["x"] + inset + (box["width"] - 2 * inset) * share, box["y"] + box["height"] / 2
@@ -127,7 +126,7 @@ class Hand:
 def measure(count: int) -> dict[str, dict[str, float]]:
     """For each sim and way of moving something, what it took."""
     found: dict[str, dict[str, float]] = {}
-    with Sim3() as sim3, sync_playwright() as playwright:
+    with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
         browser = playwright.chromium.launch(**launch_options())
         for sim in SIMS:
             address = f"http://127.0.0.1:{sim3.port}/sims/{sim.slug}/embed"
@@ -138,6 +137,7 @@ def measure(count: int) -> dict[str, dict[str, float]]:
                 ways.append("picture")
             for way in ways:
                 found[f"{sim.slug}, {way}"] = _one(browser, address, way, count)
+        found["plain viser, mouse"] = _one(browser, f"http://127.0.0.1:{plain.port}/", "mouse", count)
         browser.close()
     return found
 

@@ -16,13 +16,9 @@ from typing import TypedDict
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
-# WebGL is drawn in software; the page around it then needs no WebGL of its own to be put together.
-WEBGL_WITHOUT_GPU = (
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-gpu-compositing",
-)
+WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+WITHOUT_COMPOSITING = "--disable-gpu-compositing"
+"""For tests: where WebGL is drawn in software, the page around it is put together in less time without it."""
 QUIET = (
     "--disable-background-networking",
     "--disable-component-update",
@@ -76,14 +72,14 @@ def find_browser() -> str | None:
     return next(installed, None) or _playwrights_own()
 
 
-def launch_options() -> LaunchOptions:
+def launch_options(*more: str) -> LaunchOptions:
     """How to launch the browser: also as root, without a GPU, and without traffic of its own."""
     browser = find_browser()
     if browser is None:
         raise BrowserMissing(WHAT_TO_DO)
     # Chromium's sandbox refuses to run as root.
     sandbox = ["--no-sandbox"] if _is_root() else []
-    return {"executable_path": browser, "args": [*sandbox, *WEBGL_WITHOUT_GPU, *QUIET]}
+    return {"executable_path": browser, "args": [*sandbox, *WEBGL_WITHOUT_GPU, *QUIET, *more]}
 
 
 def ensure_browser() -> str:
