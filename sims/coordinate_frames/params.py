@@ -32,9 +32,9 @@ class FramesParams(Params):
         ),
     ] = None
     """The other one than the convention's own mirrors Z"""
-    point: Annotated[Triple, Vector(-BOUND, BOUND, step=0.05, title="Point x, y, z")] = (1.0, 0.8, 0.6)
+    point: Annotated[Triple, Vector(-BOUND, BOUND, step=0.05, title="Point")] = (1.0, 0.8, 0.6)
     """In the axes of the convention; where w isn't 1, the point is these divided by w"""
-    w: Annotated[float, Slider(0, 2, step=0.01, symbol="w", title="Fourth coordinate")] = 1
+    w: Annotated[float, Slider(0, 2, step=0.01, symbol="w", title="Coordinate")] = 1
     """The point is (x/w, y/w, z/w); with w = 0 it is a direction"""
     show_rule: Annotated[bool, Switch(title="Show hand", group=SHOW)] = True
     """The rule of the right hand, or of the left for left-handed axes"""

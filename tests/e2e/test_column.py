@@ -255,6 +255,10 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
         assert frame.evaluate(TARGETS.replace("LEAST", "23.5")) == [], f"{width}×{height}"
     frame.evaluate(folds, False)
     learner.page.set_viewport_size({"width": 1280, "height": 800})
+    tall = frame.locator(".s3-label:visible").evaluate_all(
+        "all => all.filter((l) => l.clientHeight > 27).map((l) => l.innerText)"
+    )
+    assert tall == [], "labels that take two lines"
     primary = box(frame.locator(".s3-primary"))
     assert primary["y"] + primary["height"] <= 800, "the first action is out of sight"
 
