@@ -130,14 +130,21 @@ def test_the_view_steps_back_for_a_camera_that_leaves_it_and_keeps_what_somebody
     canvas = box(learner.frame.locator("canvas[data-engine]"))
     learner.pull((canvas["x"] + 30, canvas["y"] + 30), 60, 10)
     learner.until(lambda: "view" in learner.address)
-    chosen = learner.sockets.camera["position"]
+    chosen = learner.until(lambda: at_rest(learner))
     learner.type("position", "-9", box=2)
     agree(learner, position=[0, -9, 1.2])
-    learner.page.wait_for_timeout(300)
-    np.testing.assert_allclose(learner.sockets.camera["position"], chosen, atol=1e-6)
+    np.testing.assert_allclose(at_rest(learner), chosen, atol=1e-6)
     learner.press("Home view")
     learner.until(lambda: abs(away() - farther) < 0.01)
     learner.until(lambda: "view" not in learner.address)
+
+
+def at_rest(learner: Learner) -> Array:
+    """The viewpoint, which glides on after a hand has let go."""
+    before = np.array(learner.sockets.camera["position"])
+    learner.page.wait_for_timeout(400)
+    np.testing.assert_allclose(learner.sockets.camera["position"], before, atol=1e-9)
+    return before
 
 
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:
