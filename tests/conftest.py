@@ -10,6 +10,7 @@ import pytest
 from hypothesis import settings
 
 from sims.kit import child
+from tests.browser import WITHOUT_COMPOSITING, LaunchOptions, launch_options
 from tests.server import shared_host
 
 # The examples of a property are the same in every run, whatever else runs: `make fuzz` looks for others. How long one
@@ -22,6 +23,12 @@ settings.load_profile(os.environ.get("SIM3_EXAMPLES", "sim3"))
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests with a browser come last: from its first use on, Playwright keeps an event loop running here."""
     items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+
+
+@pytest.fixture(scope="session")
+def browser_type_launch_args() -> LaunchOptions:
+    """For pytest-playwright's own `browser`, which lives as long as the test run."""
+    return launch_options(WITHOUT_COMPOSITING)
 
 
 @pytest.fixture(scope="session", autouse=True)

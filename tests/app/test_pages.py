@@ -21,7 +21,6 @@ from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
-from tests.browser import WITHOUT_COMPOSITING, LaunchOptions, launch_options
 from tests.server import Server
 
 AnySim = Sim[Any, Any]
@@ -113,11 +112,6 @@ def server() -> Iterator[Server]:
 def client(server: Server) -> Iterator[httpx.Client]:
     with httpx.Client(base_url=server.url, trust_env=False) as client:
         yield client
-
-
-@pytest.fixture(scope="session")
-def browser_type_launch_args() -> LaunchOptions:
-    return launch_options(WITHOUT_COMPOSITING)
 
 
 def get(client: httpx.Client, address: str, status: int = 200) -> Document:

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, ViewportSize
 
-from tests.browser import WITHOUT_COMPOSITING, launch_options
 from tests.e2e.learner import Learner, Witness
 from tests.server import PROMPT, Server
 
@@ -21,12 +20,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "tests/e2e" in item.path.as_posix():
             item.add_marker(pytest.mark.e2e)
-
-
-@pytest.fixture(scope="session")
-def browser_type_launch_args() -> dict[str, Any]:
-    """For pytest-playwright's own `browser`, which lives as long as the test run."""
-    return {**launch_options(WITHOUT_COMPOSITING)}
 
 
 @pytest.fixture(scope="session")

@@ -81,6 +81,16 @@ def test_a_slider_turns_the_aircraft_from_hand_to_pixel(classroom: Classroom) ->
     picture = Picture(learner)
     assert not picture.shows("x", before["x"]), f"the x axis is still where it was: {picture.around(before['x'])}"
 
+    learner.slide("progress", 1.5)
+    learner.until(lambda: abs(learner.params["progress"] - 1.5) < 0.2)
+    agree(learner, pitch=-30, roll=10)
+    shown_at_tips(learner, "z")
+
+    learner.open("euler-angles/embed?yaw=40&roll=-25")
+    learner.type("pitch", "90")
+    agree(learner, pitch=90)
+    shown_at_tips(learner, "z")
+
 
 def test_each_control_answers_to_keyboard_pointer_and_typing(classroom: Classroom) -> None:
     learner = classroom.open_column("euler-angles/embed?yaw=45")
