@@ -51,6 +51,8 @@ class Step:
     seconds: float
     even: bool = False
     """At one speed: for the legs of a path that isn't straight, which is eased as a whole."""
+    words: str = ""
+    """What is to be seen in this leg, in a sentence: the caption while it plays."""
 
 
 @dataclass(frozen=True)
