@@ -29,9 +29,9 @@ class Paste(Generic[P]):
     """From the text to what JSON holds. A function of a module: it runs in a child with limits. Raises ValueError in
     words for whoever pasted."""
     changes: Callable[[P, Any], Mapping[str, Any]]
-    """Of the state, by what was read; lists where `read` gave tuples. Raises ValueError in words too."""
+    """What of a state changes by what was read, with lists where `read` gave tuples. Raises ValueError in words too."""
     endings: tuple[str, ...] = ()
-    """Of files that such a text may come from."""
+    """How files end that such a text may come from."""
 
     def found(self, text: str) -> Any:
         """What `read` makes of a text, in a child. Raises ValueError in words."""
