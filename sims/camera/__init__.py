@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from sims.camera import actions
 from sims.camera.panes import panes
-from sims.camera.params import CameraParams
+from sims.camera.params import POSE, CameraParams
 from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
 from sims.camera.scene import CameraScene, seen
 from sims.camera.solution import CameraSolution, solve
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.camera.window import USUAL, view
+from sims.kit.sim import Action, Contract, Objective, Sim
 
 __all__ = ["CONTRACT", "SIM", "CameraParams", "CameraSolution", "solve"]
 
@@ -33,7 +34,8 @@ SIM = Sim(
     readouts=readouts,
     folds=(WORKED, ALL, MATRIX,),
     describe=describe,
-    view=View((-4.28, -7.87, 4.4), (0.05, -0.37, -0.6), 3.3),
+    view=USUAL,
+    view_of=view,
     seen=seen,
     panes=panes,
     actions=(
@@ -41,7 +43,7 @@ SIM = Sim(
             "dolly-zoom", "Dolly zoom", "Move and zoom together, so that the house stays as tall in the picture",
             actions.dolly_zoom,
         ),
-        Action("look", "Look at the subject", "Turn the camera to the middle of the house", actions.look),
+        Action("look", "Look at the house", "Turn the camera to the middle of the house", actions.look, POSE),
     ),
     handles={"/eye": actions.hold_eye, "/look": actions.hold_look, "principal": actions.hold_principal},
     states={
@@ -51,7 +53,13 @@ SIM = Sim(
         "behind": {"selected": "back-post"},
         "outside": {"selected": "far-post", "pan": 40},
         "looking back": {"pan": 180},
-        "no scale": {"projection": "orthographic", "pan": 180},
+        "no scale": {"projection": "weak", "position": (0.0, 20.0, 1.2)},
+        "orthographic from behind": {"projection": "orthographic", "pan": 180},
+        "through": {"through": True, "pan": 10, "roll": 20, "cx": 200},
+        "through, orthographic": {"through": True, "projection": "orthographic", "tilt": -15},
+        "barrel": {"k1": -0.3, "k2": 0.08, "p1": 0.001},
+        "cushion": {"k1": 0.4, "fx": 400, "fy": 400},
+        "a photograph": {"width": 4000, "height": 3000, "fx": 4708, "fy": 4712, "cx": 1987, "cy": 1510, "k1": -0.05},
         "straight down": {"position": (-1.0, 1.0, 8.0), "tilt": -90, "selected": "cube-left"},
         "in the house": {"position": (-1.47, 1.6, 0.9), "fx": 300, "fy": 300, "selected": "roof-far"},
         "in the camera's plane": {"position": (0.0, -0.6, 1.2), "selected": "cube-left"},

@@ -33,6 +33,10 @@ class Pane:
     note: str = ""
     wide: bool = False
     """It takes the whole width where pictures stand side by side."""
+    large: bool = False
+    """It is what the sim is about: the column makes room for it, and the read-outs stand under it, by the controls."""
+    line: str = ""
+    """HTML of a read-out that stands over it."""
 
 
 class Picture:
@@ -200,7 +204,7 @@ class Picture:
         other._points, other._handles = [*self._points], [*self._handles]
         return other
 
-    def pane(self, note: str = "", *, wide: bool = False) -> Pane:
+    def pane(self, note: str = "", *, wide: bool = False, large: bool = False, line: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
@@ -214,7 +218,7 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}{''.join(self._reachable())}</svg>"
         )
-        return Pane(self.name, self.title, svg, note, wide)
+        return Pane(self.name, self.title, svg, note, wide, large, line)
 
     def _reachable(self) -> list[str]:
         """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
@@ -245,7 +249,8 @@ def _linked(link: str) -> str:
 
 def figure(pane: Pane) -> str:
     """Where a pane goes."""
-    return f'<figure class="s3-pane{" s3-wide" if pane.wide else ""}" data-part="pane:{escape(pane.name)}"></figure>'
+    kind = "s3-pane" + " s3-wide" * pane.wide + " s3-large" * pane.large
+    return f'<figure class="{kind}" data-part="pane:{escape(pane.name)}"></figure>'
 
 
 def still(pane: Pane) -> str:
@@ -263,4 +268,4 @@ def content(pane: Pane) -> str:
     title = safe(pane.title)
     larger = f'<button type="button" data-s3="enlarge" aria-label="{title}: larger" title="Large or small">⤢</button>'
     note = f"<span> {escape(pane.note)}</span>"
-    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.svg}"
+    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.line}{pane.svg}"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -141,6 +141,32 @@ class Table:
         return f'<tr data-link="{escape(self.links[k])}"{kind}><th scope="row">{button}</th>{numbers}</tr>'
 
 
+class Link(NamedTuple):
+    """One step of a chain: what leads to it (none for the first), what it is, its numbers, and what highlights it."""
+
+    by: str
+    what: str
+    value: str
+    link: str = ""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A calculation on one line, step after step."""
+
+    note: str
+    links: Sequence[Link]
+
+    def html(self) -> str:
+        inside = "".join([self._link(*map(escape, link)) for link in self.links])
+        return f'<ol class="s3-chain" aria-label="{escape(self.note)}">{inside}</ol>'
+
+    def _link(self, by: str, what: str, value: str, link: str) -> str:
+        lit = f' data-link="{link}"' if link else ""
+        arrow = f"<i>{by}</i>" if by else ""
+        return f"<li{lit}>{arrow}<span>{what}</span><b>{value}</b></li>"
+
+
 @dataclass(frozen=True)
 class Note:
     """A sentence; `level` is info, near or warn (the last two carry an icon)."""
@@ -163,7 +189,7 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Note | Fold
+Readout = Formula | Table | Chain | Note | Fold
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:

@@ -118,7 +118,11 @@ class Files:
 
 @dataclass(frozen=True)
 class View:
-    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
+    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres.
+
+    With radius 0 it is from just there, at every size of the page; the scene then moves the viewpoint itself, by
+    `Stage.look_through`.
+    """
 
     position: tuple[float, float, float]
     look_at: tuple[float, float, float]
@@ -126,6 +130,8 @@ class View:
 
     def holding(self, places: Iterable[npt.ArrayLike]) -> View:
         """The same, or from so many steps farther away that these places are in sight; not those that run away."""
+        if not self.radius:
+            return self
         far = [math.dist(np.asarray(place, dtype=float), self.look_at) / self.radius for place in places]
         farthest = max((distance for distance in far if distance < RUN_AWAY), default=0.0)
         steps = max(0, math.ceil(math.log(max(farthest / SPARE, 1.0), STEP)))

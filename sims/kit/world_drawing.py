@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, pairwise
 from operator import itemgetter
 
 import numpy as np
@@ -52,14 +52,15 @@ class Sight:
     faces: Sequence[tuple[int, Pixels]]
 
     def outlines(self) -> Array:
-        """Edges (n, 2, 2) of all faces."""
-        pieces = [edge for _, corners in self.faces for edge in zip(corners, (*corners[1:], corners[0]), strict=True)]
-        return np.array(pieces).reshape(-1, 2, 2)
+        """Edges (n, 2, 2) of all faces but the sleepers, whose many would be all that one sees."""
+        rings = [corners for face, corners in self.faces if OF_FACE[face] != "sleeper"]
+        flat = [v for ring in rings for a, b in zip(ring, (*ring[1:], ring[0]), strict=True) for v in (*a, *b)]
+        return np.array(flat).reshape(-1, 2, 2)
 
     def bent(self, bend: Callable[[Array], Array]) -> Sight:
         """The same through a lens that moves pixels (n, 2)."""
-        faces = [(face, _bent(corners, bend)) for face, corners in self.faces]
-        return Sight(_bent(self.ground, bend) if self.ground else [], faces)
+        rings = _bent([self.ground, *(corners for _, corners in self.faces)], bend)
+        return Sight(rings[0], [(face, ring) for (face, _), ring in zip(self.faces, rings[1:], strict=True)])
 
 
 def draw_in_scene(stage: Stage, offset: Place = ORIGIN) -> Node:
@@ -116,15 +117,19 @@ def _ground(P: Array, box: Box) -> Pixels:
     return [(u, v) for u, v, _ in clip_polygon(corners, 2)] if (a, b, c) != (0.0, 0.0, 0.0) else []
 
 
-def _bent(corners: Pixels, bend: Callable[[Array], Array]) -> Pixels:
-    """A polygon whose edges are bent as the lens bends them."""
-    ring = np.array(corners)
-    along = np.roll(ring, -1, axis=0) - ring
-    counts = np.ceil(np.linalg.norm(along, axis=1) / LONG).clip(1.0, 40.0).astype(int)
-    edge = np.repeat(np.arange(len(ring)), counts)
+def _bent(rings: Sequence[Pixels], bend: Callable[[Array], Array]) -> list[Pixels]:
+    """Polygons whose edges are bent as the lens bends them: all at once, with as many corners as it takes."""
+    sizes = np.array([len(ring) for ring in rings])
+    starts = np.array([corner for ring in rings for corner in ring]).reshape(-1, 2)
+    ends = np.array([corner for ring in rings for corner in (*ring[1:], *ring[:1])]).reshape(-1, 2)
+    along = ends - starts
+    counts = np.ceil(np.hypot(*along.T) / LONG).clip(1.0, 40.0).astype(int)
+    edge = np.repeat(np.arange(len(starts)), counts)
     within = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[edge]
-    moved: Pixels = [(u, v) for u, v in bend(ring[edge] + within[:, None] * along[edge]).tolist()]
-    return moved
+    moved = [(u, v) for u, v in bend(starts[edge] + within[:, None] * along[edge]).tolist()]
+    of_corner = np.concatenate([[0], np.cumsum(counts)])
+    borders = of_corner[np.concatenate([[0], np.cumsum(sizes)])].tolist()
+    return [moved[first:end] for first, end in pairwise(borders)]
 
 
 def _fills() -> Iterator[str]:

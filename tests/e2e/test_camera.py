@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sims.camera.solution import LIFT
-from sims.camera.world import PLACES, SUBJECT
+from sims.kit.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 

@@ -71,6 +71,14 @@ class Stage:
         self._home(position, look_at, radius)
         view.look(self.client.camera, position, look_at, radius)
 
+    def look_through(self, window: view.Window) -> None:
+        """See the scene as through a window; the sim's view of such a state is from the same place, with radius 0."""
+        view.look_through(self.client.camera, window)
+
+    def stand_back(self) -> None:
+        """See the scene upright and as wide as usual again; the sim's view of the state says from where."""
+        view.stand_back(self.client.camera)
+
     def linked(self, name: str, *nodes: Node) -> None:
         """Highlight nodes together with all else that is linked under a name: a control, entries of a matrix."""
         self._linked.setdefault(name, []).extend(nodes)
