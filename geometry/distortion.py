@@ -42,9 +42,10 @@ class Distortion:
 
         Beyond it the formula folds the picture back, which no lens does.
         """
-        roots = np.roots([7.0 * self.k3, 5.0 * self.k2, 3.0 * self.k1, 1.0])
-        turns = [root.real for root in roots.tolist() if abs(root.imag) < 1e-12 * abs(root) and root.real > 0.0]
-        return math.sqrt(min(turns)) if turns else math.inf
+        # The slope 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶ is zero there: a cubic of 1/r², without a coefficient to divide by.
+        roots = np.roots([1.0, 3.0 * self.k1, 5.0 * self.k2, 7.0 * self.k3]).tolist()
+        turns = [root.real for root in roots if root.real > 0.0 and abs(root.imag) < 1e-9 * abs(root)]
+        return math.sqrt(1.0 / max(turns)) if turns else math.inf
 
     @np.errstate(invalid="ignore", over="ignore")
     def apply(self, points: npt.ArrayLike) -> Array:

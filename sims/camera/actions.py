@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.camera import aim
 from sims.camera.params import CameraParams
-from sims.camera.picture import pixel_at
+from sims.camera.lens import pixel_at
 from sims.camera.solution import LIFT, camera_of
 from sims.kit.sim import Step
 from sims.kit.types import Place

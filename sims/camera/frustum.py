@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.camera import Camera
 from sims.camera.params import CameraParams
-from sims.camera.picture import scaled
+from sims.camera.lens import scaled
 from sims.kit.types import Pixel
 from sims.kit.world import NAMES
 from sims.kit.world_drawing import Sight

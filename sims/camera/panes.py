@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sims.camera.params import CameraParams
-from sims.camera.picture import shown, size
+from sims.camera.lens import shown, size
 from sims.camera.solution import CameraSolution, NamedPoint, VanishingPoint
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import Chain, Link, figure
@@ -97,7 +97,7 @@ def _chain(p: CameraParams, s: CameraSolution) -> Iterator[Link]:
     yield Link("", "world, m", _row(point.world, 2))
     yield Link("R, t", "camera, m", _row(point.camera, 2), "position pan tilt roll")
     if point.pixel is None:
-        yield Link("", "pixel", "⚠ none: behind" if z <= 0.0 else "⚠ none")
+        yield Link("", "pixel", "⚠ behind" if z <= 0.0 else "⚠ not seen")
         return
     if p.projection == "orthographic":
         yield Link("no z", "x, y in m", _row((x, y), 2))

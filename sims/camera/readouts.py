@@ -13,7 +13,7 @@ from sims.kit.world import NAMES, TITLES
 
 SAME = 1.0
 """Pixels within which two points are said to share a pixel."""
-NO_SCALE = "No picture: its scale comes from the mean depth of the points in front, and there are none."
+NO_SCALE = "No picture: its scale comes from the mean depth of the points in front of the camera, and no point is."
 WORKED, MATRIX, ALL = "The point, step by step", "P, and what it tells", "All points"
 """Titles of folds."""
 IN_K = (("fx", "skew", "cx"), ("", "fy", "cy"), ("", "", ""))

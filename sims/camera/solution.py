@@ -16,7 +16,7 @@ from geometry.distortion import Distortion
 from geometry.projection import decompose, vanishing_points
 from sims.camera.frustum import Frustum, frustum
 from sims.camera.params import COEFFICIENTS, CameraParams
-from sims.camera.picture import Lens, pictured
+from sims.camera.lens import Lens, pictured
 from sims.kit.frame import inside
 from sims.kit.sim import DRAWN
 from sims.kit.types import Pixel, Place
@@ -85,7 +85,7 @@ class CameraSolution:
     fov_y: float
     points: Sequence[NamedPoint]
     mean_depth: float | None
-    """Of the named points in front of the camera."""
+    """Mean of the named points in front of the camera."""
     scale_depth: float | None
     """The one depth by which weak perspective divides."""
     scale: float | None
@@ -104,7 +104,7 @@ class CameraSolution:
     grip: Array
     """Where the grip stands that moves the camera: above it, where nothing hides it."""
     seen: Sight | None = field(metadata=DRAWN)
-    """The picture, as it is shown: `sims.camera.picture`."""
+    """The picture, as it is shown: `sims.camera.lens`."""
     straight: Sight | None = field(metadata=DRAWN)
     """The same without distortion; None where there is none."""
 

@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from app.rooms.motion import between
 from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
-from sims.camera.picture import shown
+from sims.camera.lens import shown
 from sims.camera.solution import LIFT
 from sims.kit import readout
 from sims.kit.world import NAMES, PLACES, POINTS, SUBJECT, TITLES
