@@ -6,13 +6,14 @@ a name is followed from the world to its pixel.
 
 from __future__ import annotations
 
-from sims.camera import actions
+from sims.camera import actions, calibration
 from sims.camera.panes import panes
-from sims.camera.params import POSE, CameraParams
+from sims.camera.params import OWN, POSE, CameraParams
 from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
 from sims.camera.scene import CameraScene, seen
 from sims.camera.solution import CameraSolution, solve
 from sims.camera.window import USUAL, view
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Objective, Sim
 
 __all__ = ["CONTRACT", "SIM", "CameraParams", "CameraSolution", "solve"]
@@ -44,6 +45,15 @@ SIM = Sim(
             actions.dolly_zoom,
         ),
         Action("look", "Look at the house", "Turn the camera to the middle of the house", actions.look, POSE),
+    ),
+    paste=Paste(
+        group=OWN,
+        title="Calibration",
+        about="What OpenCV, ROS (camera_info) or Kalibr wrote of a camera: its matrix, picture size and distortion",
+        example=calibration.EXAMPLE,
+        read=calibration.read,
+        changes=calibration.changes,
+        endings=(".yaml", ".yml", ".xml", ".json", ".txt"),
     ),
     handles={"/eye": actions.hold_eye, "/look": actions.hold_look, "principal": actions.hold_principal},
     states={

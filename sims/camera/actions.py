@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from geometry.camera import aim
-from sims.camera.params import CameraParams
 from sims.camera.lens import pixel_at
+from sims.camera.params import CameraParams
 from sims.camera.solution import LIFT, camera_of
 from sims.kit.sim import Step
 from sims.kit.types import Place

@@ -11,8 +11,8 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.camera import Camera
-from sims.camera.params import CameraParams
 from sims.camera.lens import scaled
+from sims.camera.params import CameraParams
 from sims.kit.types import Pixel
 from sims.kit.world import NAMES
 from sims.kit.world_drawing import Sight

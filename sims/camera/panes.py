@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sims.camera.params import CameraParams
 from sims.camera.lens import shown, size
+from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, NamedPoint, VanishingPoint
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import Chain, Link, figure

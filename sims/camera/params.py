@@ -14,6 +14,7 @@ from sims.kit.world import TITLES, Name
 Projection = Literal["perspective", "orthographic", "weak"]
 FARTHEST = 20.0
 LENS, POSE, DISTORTION = "The rest of K, and the picture’s size", "Roll, and where to look", "Lens distortion"
+OWN = "Your own camera"
 LARGEST = 8192
 """Pixels of the widest and the tallest picture."""
 MOST = 3.125

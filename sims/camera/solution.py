@@ -15,8 +15,8 @@ from geometry.camera import Camera, pan_tilt_roll
 from geometry.distortion import Distortion
 from geometry.projection import decompose, vanishing_points
 from sims.camera.frustum import Frustum, frustum
-from sims.camera.params import COEFFICIENTS, CameraParams
 from sims.camera.lens import Lens, pictured
+from sims.camera.params import COEFFICIENTS, CameraParams
 from sims.kit.frame import inside
 from sims.kit.sim import DRAWN
 from sims.kit.types import Pixel, Place
