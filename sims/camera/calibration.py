@@ -141,6 +141,4 @@ def _check_models(entries: Entries) -> None:
     for name, words in entries:
         model = _plain(words)
         if name in {"distortionmodel", "cameramodel"} and model and model not in MODELS:
-            raise ValueError(
-                f"The model “{words.strip()[:40]}” isn’t one of k1, k2, p1, p2, k3 (plumb_bob, radtan), which this sim has."
-            )
+            raise ValueError(f"“{words.strip()[:40]}” isn’t the model of k1, k2, p1, p2, k3: plumb_bob, or radtan.")

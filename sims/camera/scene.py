@@ -112,7 +112,6 @@ class CameraInScene:
         self.dot = stage.ball("/camera/dot", 0.024, "held")
         self.ray = stage.lines("/camera/ray", "held", width=3.5)
         self.meets = stage.strokes("/camera/vanishing", SIGHTS, width=2.5)
-        self.label = stage.label("/camera/label", "picture", anchor="top-center")
 
     def draw(self, p: CameraParams, s: CameraSolution) -> None:
         self.figure.node.pose(s.orientation.tolist(), p.position)
@@ -131,14 +130,12 @@ class CameraInScene:
         self.far.pieces(_box(f.corners, f.far) if boxed and f is not None and f.far is not None else None)
         self.rays.pieces(f.rays if f is not None and p.show_rays and outside else None)
         self.meets.show(there and p.show_vanishing and outside)
-        self.label.show(there and p.show_labels and outside)
         chosen = None if f is None or f.chosen is None else f.chosen.tolist()
         self.dot.place(chosen[1] if chosen and outside else None)
         self.ray.stroke([chosen[0], chosen[2]] if chosen and outside else None)
         if f is not None:
             self.dots.points(f.dots)
             self.meets.draw(np.stack([np.zeros((3, 3)), 1.5 * f.meet], axis=1))
-            self.label.pose(position=f.corners[3].tolist())
 
 
 def _round(corners: Array) -> Array:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pytest
+from scipy.spatial.transform import Rotation
 
 from sims.camera.solution import LIFT
 from sims.kit.world import PLACES, SUBJECT
@@ -45,11 +47,16 @@ def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: C
     learner.choose("projection", "orthographic")
     flat = agree(learner, projection="orthographic")
     assert flat["P"][2] == [0, 0, 0, 1]
-    learner.type("tilt", "90")
-    agree(learner, tilt=90)
+    assert flat["scale"] == 100
+    learner.type("position", "-18,36", box=2)
+    assert agree(learner, position=[0, -18.36, 1.2])["scale"] == 100
+    assert learner.control("textbox", "position.1").input_value() == "−18.36"
+    learner.choose("projection", "weak")
+    learner.type("position", "20", box=2)
+    agree(learner, position=[0, 20, 1.2])
     learner.says("No picture: its scale comes from")
     learner.press("Reset")
-    agree(learner, fx=600, fy=300, tilt=0, projection="perspective")
+    agree(learner, fx=600, fy=300, position=[0, -4, 1.2], projection="perspective")
     learner.press_keys("tilt", "ArrowLeft", "ArrowLeft")
     agree(learner, tilt=-2)
     learner.choose("projection", "weak")
@@ -147,6 +154,30 @@ def at_rest(learner: Learner) -> Array:
     return before
 
 
+def test_the_scene_is_seen_through_the_camera_and_from_where_it_was_again(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed?tilt=-10&roll=25")
+    first = np.array(learner.until(lambda: at_rest(learner)))
+    learner.find("switch", "Look through the camera").click()
+
+    def through(**expected: Any) -> None:
+        solution = learner.solution(through=True, **expected)
+        camera = learner.sockets.camera
+        np.testing.assert_allclose(camera["position"], solution["center"], rtol=0, atol=1e-5)
+        turned = Rotation.from_quat(camera["wxyz"], scalar_first=True).as_matrix()
+        np.testing.assert_allclose(turned, np.transpose(solution["R"]), rtol=0, atol=1e-5)
+        frustum = solution["frustum"]
+        assert np.tan(camera["fov"] / 2) >= abs(frustum["corners"][2][1]) / frustum["depth"]
+
+    learner.until(through)
+    learner.press_keys("pan", "PageUp")
+    learner.until(lambda: through(pan=10))
+    assert "view" not in learner.address
+    learner.find("switch", "Look through the camera").click()
+    learner.until(lambda: np.testing.assert_allclose(learner.sockets.camera["position"], first, atol=1e-4))
+    assert learner.sockets.camera["fov"] == pytest.approx(0.7, abs=1e-6)
+    assert not learner.params["through"]
+
+
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:
     learner = classroom.open_column("camera/embed")
     wanted = agree(learner)["subject"]["height"]
@@ -159,7 +190,7 @@ def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom:
     for params in told:
         assert abs(height(params) - wanted) < 0.5
     assert end["center"][1] > -1.5
-    learner.press("Look at the subject")
+    learner.press("Look at the house")
     learner.until(lambda: np.testing.assert_allclose(agree(learner)["subject"]["pixel"], [320, 240], atol=1e-6))
 
 
