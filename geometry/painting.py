@@ -89,9 +89,10 @@ class Painter:
         rows, viewer = np.concatenate([P, planes]), viewpoint(P)
         flat = self._corners.reshape(-1, 3).dot(rows[:, :3].T) + rows[:, 3]
         values = flat.reshape(*self._corners.shape[:2], -1)
-        outside = values[..., 3:] < 0.0
-        seen = (self.planes.dot(viewer) > 0.0) & ~outside.all(axis=1).any(axis=1)
-        whole = ~outside.any(axis=(1, 2))
+        # Outside of which planes a corner is, as the bits of a number: one comparison for all of them.
+        outside = (flat[:, 3:] < 0.0).dot(2.0 ** np.arange(len(planes))).astype(np.int64).reshape(values.shape[:2])
+        seen = (self.planes.dot(viewer) > 0.0) & (np.bitwise_and.reduce(outside, axis=1) == 0)
+        whole = np.bitwise_or.reduce(outside, axis=1) == 0
         pixels = (values[..., :2] / values[..., 2:3]).tolist()
         shown, uncut = seen.tolist(), whole.tolist()
         painted: list[tuple[int, Pixels]] = []

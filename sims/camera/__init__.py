@@ -81,8 +81,11 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="fx fy cx cy skew position pan tilt roll projection show_rays show_frustum",
-    solution="K R t P center fov_x fov_y points",
+    parameters=(
+        "fx fy cx cy skew width height ortho_scale k1 k2 p1 p2 k3 position pan tilt roll projection through show_rays"
+        " show_frustum"
+    ),
+    solution="K R t P center fov_x fov_y points scale scale_depth distorted",
     link=(
         "fx=800&fy=700&cx=300&cy=200&skew=10&position=1,-5.5,2&pan=20&tilt=-10&roll=5&projection=weak"
         "&show_rays=0&show_frustum=0"

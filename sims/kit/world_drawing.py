@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from operator import itemgetter
 
 import numpy as np
+import numpy.typing as npt
 import trimesh
 
 from geometry.affine_camera import AffineCamera
@@ -53,9 +54,8 @@ class Sight:
 
     def outlines(self) -> Array:
         """Edges (n, 2, 2) of all faces but the sleepers, whose many would be all that one sees."""
-        rings = [corners for face, corners in self.faces if OF_FACE[face] != "sleeper"]
-        flat = [v for ring in rings for a, b in zip(ring, (*ring[1:], ring[0]), strict=True) for v in (*a, *b)]
-        return np.array(flat).reshape(-1, 2, 2)
+        starts, ends, _ = _sides([corners for face, corners in self.faces if OF_FACE[face] != "sleeper"])
+        return np.stack([starts, ends], axis=1)
 
     def bent(self, bend: Callable[[Array], Array]) -> Sight:
         """The same through a lens that moves pixels (n, 2)."""
@@ -119,17 +119,24 @@ def _ground(P: Array, box: Box) -> Pixels:
 
 def _bent(rings: Sequence[Pixels], bend: Callable[[Array], Array]) -> list[Pixels]:
     """Polygons whose edges are bent as the lens bends them: all at once, with as many corners as it takes."""
-    sizes = np.array([len(ring) for ring in rings])
-    starts = np.array([corner for ring in rings for corner in ring]).reshape(-1, 2)
-    ends = np.array([corner for ring in rings for corner in (*ring[1:], *ring[:1])]).reshape(-1, 2)
+    starts, ends, borders = _sides(rings)
     along = ends - starts
     counts = np.ceil(np.hypot(*along.T) / LONG).clip(1.0, 40.0).astype(int)
     edge = np.repeat(np.arange(len(starts)), counts)
     within = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[edge]
     moved = [(u, v) for u, v in bend(starts[edge] + within[:, None] * along[edge]).tolist()]
     of_corner = np.concatenate([[0], np.cumsum(counts)])
-    borders = of_corner[np.concatenate([[0], np.cumsum(sizes)])].tolist()
-    return [moved[first:end] for first, end in pairwise(borders)]
+    return [moved[first:end] for first, end in pairwise(of_corner[borders].tolist())]
+
+
+def _sides(rings: Sequence[Pixels]) -> tuple[Array, Array, npt.NDArray[np.intp]]:
+    """Where the edges of all rings start and end (n, 2), and the numbers at which rings begin and the last one ends."""
+    borders = np.cumsum([0, *map(len, rings)])
+    starts = np.array([corner for ring in rings for corner in ring]).reshape(-1, 2)
+    after = np.arange(1, len(starts) + 1)
+    filled = borders[1:] > borders[:-1]
+    after[borders[1:][filled] - 1] = borders[:-1][filled]
+    return starts, starts[after], borders
 
 
 def _fills() -> Iterator[str]:

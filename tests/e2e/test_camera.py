@@ -116,6 +116,25 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
     agree(learner, cx=330)
 
 
+def test_picture_matrices_controls_and_actions_are_seen_together(classroom: Classroom) -> None:
+    learner = classroom.open_column("camera/embed", size={"width": 1280, "height": 800})
+    agree(learner, fx=600)
+    seen = {name: box(learner.frame.locator(selector)) for name, selector in {
+        "chain": ".s3-chain", "picture": "svg[data-pane=picture]", "K": ".s3-key .s3-formula >> nth=0",
+        "pose": ".s3-key .s3-formula >> nth=1", "focal length": "[data-control=fx]", "tilt": "[data-control=tilt]",
+        "dolly zoom": "[data-act=dolly-zoom]",
+    }.items()}  # fmt: skip
+    assert seen["picture"]["width"] >= 480
+    tops = [place["y"] for name, place in seen.items() if name != "pose"]
+    assert tops == sorted(tops), "the matrices stand between the picture and the controls that change them"
+    assert seen["pose"]["y"] == seen["K"]["y"]
+    assert seen["chain"]["height"] < 40, "the chain is one line with its words above it"
+    assert max(place["y"] + place["height"] for place in seen.values()) <= 800
+    learner.frame.locator("[data-slide=tilt]").hover()
+    lit = "[...document.querySelectorAll('.s3-key mtd.s3-highlighted')].length"
+    learner.until(lambda: learner.frame.evaluate(lit) == 9, patience=5)
+
+
 def test_the_view_steps_back_for_a_camera_that_leaves_it_and_keeps_what_somebody_chose(classroom: Classroom) -> None:
     learner = classroom.open("camera/embed")
 

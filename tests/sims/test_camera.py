@@ -21,6 +21,7 @@ from app.rooms.motion import between
 from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
 from sims.camera.lens import shown
 from sims.camera.solution import LIFT
+from sims.camera.window import USUAL, window
 from sims.kit import readout
 from sims.kit.world import NAMES, PLACES, POINTS, SUBJECT, TITLES
 from sims.kit.world_drawing import PAINTER, PAINTS
@@ -632,3 +633,89 @@ def test_actions_end_in_states_from_everywhere(p: CameraParams) -> None:
         for step in action(p):
             state = state.changed(step.changes)
         assert SIM.describe(state, solve(state))
+
+
+# ---- the column
+
+
+def chain(p: CameraParams) -> list[list[str]]:
+    """Each step of the line over the picture: what leads to it, what it is, its numbers."""
+    (pane,) = SIM.panes(p, solve(p)) if SIM.panes else ()
+    return [[str(part.text) for part in step] for step in xml(pane.line).iter("li")]
+
+
+def test_the_line_over_the_picture_leads_from_the_world_to_the_pixel() -> None:
+    p = START.changed({"selected": "near-post", "skew": 40, "pan": 7, "fy": 500})
+    R, t = pose(p)
+    axes = R @ PLACES["near-post"] + t
+    pixel = intrinsics(p) @ (axes / axes[2])
+    steps = chain(p)
+    assert [what for *_, what, _ in steps] == ["world, m", "camera, m", "normalised", "pixel"]
+    assert [by for by, *_ in steps[1:]] == ["R, t", "÷ z", "K"]
+    places = (PLACES["near-post"], axes, axes[:2] / axes[2], pixel[:2])
+    for (*_, said), numbers, digits in zip(steps, places, (2, 2, 2, 1), strict=True):
+        assert said == f"({', '.join(readout.figure(v, digits) for v in numbers)})"
+
+
+def test_the_line_says_what_each_projection_does_and_where_there_is_no_pixel() -> None:
+    steps = chain(START.changed({"projection": "orthographic", "selected": "near-post", "ortho_scale": 200}))
+    assert [by for by, *_ in steps[1:]] == ["R, t", "no z", "×"]
+    x, y = (float(v.replace("−", "-")) for v in steps[2][-1].strip("()").split(", "))
+    u, v = (float(v) for v in steps[3][-1].strip("()").split(", "))
+    assert (u, v) == pytest.approx((200 * x + 320, 200 * y + 240), abs=1.1)
+    assert chain(START.changed({"projection": "weak"}))[2][0] == "÷ mean z"
+    assert chain(START.changed({"k1": -0.2}))[3][0] == "lens"
+    assert chain(START.changed({"selected": "back-post"}))[-1] == ["pixel", "⚠ behind"]
+
+
+def test_few_controls_are_in_sight() -> None:
+    first = [name for name in CameraParams.visible if not CameraParams.kinds[name].group]
+    assert first == ["through", "projection", "fx", "position", "pan", "tilt"]
+    assert [action.name for action in SIM.actions if not action.group] == ["dolly-zoom"]
+
+
+# ---- through the camera
+
+
+@pytest.mark.parametrize("projection", ["perspective", "orthographic", "weak"])
+def test_through_the_camera_the_window_holds_the_whole_picture(projection: str) -> None:
+    p = START.changed({"through": True, "projection": projection, "cx": 150, "pan": 20, "roll": 35, "tilt": -15})
+    s, (R, _) = solve(p), pose(p)
+    w = window(p, s)
+    ahead = np.subtract(w.look_at, w.position)
+    np.testing.assert_allclose(ahead / np.linalg.norm(ahead), R[2], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(w.up, -R[1], rtol=0, atol=1e-12)
+    assert s.frustum is not None
+    corners = (s.frustum.corners @ R + p.position - w.position) @ R.T
+    slopes = np.abs(corners[:, :2] / corners[:, 2:])
+    np.testing.assert_allclose(slopes.max(axis=0), w.half, rtol=1e-9)
+    assert (p.position == pytest.approx(w.position)) == (projection == "perspective")
+    for point in s.points:  # seen from there, a point is where the picture has it
+        if point.pixel is not None and point.in_image:
+            x, y, z = R @ (np.array(point.world) - w.position)
+            place = (np.array((x, y)) / z - corners[0, :2] / corners[0, 2]) / np.ptp(
+                corners[:, :2] / corners[:, 2:], axis=0
+            )
+            pixel = place * (p.width, p.height) - 0.5
+            assert pixel == pytest.approx(point.pixel, abs=1e-6 if projection == "perspective" else 8.0)
+
+
+def test_the_view_of_who_looks_through_is_just_there_and_the_usual_one_afterwards() -> None:
+    p = START.changed({"position": (0, -18, 1.2)})
+    through = p.changed({"through": True})
+    home = SIM.home(through, solve(through))
+    assert (home.position, home.radius) == (p.position, 0.0)
+    assert SIM.home(p, solve(p)).radius > USUAL.radius
+    assert SIM.home(START, solve(START)) == USUAL
+
+
+def test_who_looks_through_sees_neither_the_camera_nor_its_grips(rig: Rig) -> None:
+    rig.show(START.changed({"through": True}))
+    for node in ("/eye", "/look", "/camera/body", "/camera/lens", "/camera/axes", "/camera/rays", "/camera/frustum"):
+        assert not rig.model.visible(node), node
+    assert rig.model.visible("/camera/frame")
+    assert rig.model.visible("/things/wall")
+    rig.show(START)
+    for node in ("/eye", "/look", "/camera/body", "/camera/lens", "/camera/axes", "/camera/rays", "/camera/frustum"):
+        assert rig.model.visible(node), node
+    assert not rig.model.visible("/camera/frame")
