@@ -8,7 +8,7 @@ import numpy.typing as npt
 from geometry.arrays import Array
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution
-from sims.camera.window import window
+from sims.camera.window import USUAL, window
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
 from sims.kit.types import Place
@@ -22,12 +22,19 @@ ABOVE = 0.2
 NAMED = {"house": "roof-near", "near post": "near-post", "far post": "far-post"}
 HINTS = {"eye": "move", "look": "aim"}
 SIGHTS = ("x", "y", "z")
+AHEAD: Array = np.subtract(USUAL.look_at, USUAL.position)
+AHEAD /= np.linalg.norm(AHEAD)
+MORE = 1.6
+"""Times as far from the middle of the first view as the camera is beside it."""
 NOTHING: Array = np.zeros((4, 3))
 
 
 def seen(p: CameraParams, s: CameraSolution) -> list[npt.ArrayLike]:
-    """What must be in sight."""
-    return [] if p.through else [p.position]
+    """What must be in sight: the camera, and room beside the middle where the scene is narrow."""
+    if p.through:
+        return []
+    away = np.subtract(p.position, USUAL.look_at)
+    return [s.grip, USUAL.look_at + MORE * (away - (away @ AHEAD) * AHEAD)]
 
 
 class CameraScene:
@@ -68,7 +75,7 @@ class CameraScene:
         self.selected.pose(position=PLACES[p.selected])
         self.selected_label.text(TITLES[p.selected].lower())
         for point, label in self.labels.items():
-            label.show(p.show_labels and p.selected != point)
+            label.show(p.show_labels and p.selected != point and not p.through)
         for hint in self.hints:
             hint.show(p.show_labels)
 

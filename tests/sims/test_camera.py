@@ -23,6 +23,7 @@ from sims.camera.lens import shown
 from sims.camera.solution import LIFT
 from sims.camera.window import USUAL, window
 from sims.kit import readout
+from sims.kit.scene.view import FIELD
 from sims.kit.world import NAMES, PLACES, POINTS, SUBJECT, TITLES
 from sims.kit.world_drawing import PAINTER, PAINTS
 from tests.server import Rig
@@ -719,3 +720,21 @@ def test_who_looks_through_sees_neither_the_camera_nor_its_grips(rig: Rig) -> No
     for node in ("/eye", "/look", "/camera/body", "/camera/lens", "/camera/axes", "/camera/rays", "/camera/frustum"):
         assert rig.model.visible(node), node
     assert not rig.model.visible("/camera/frame")
+
+
+@pytest.mark.parametrize("aspect", [0.94, 0.64, 1.5])
+def test_the_camera_is_in_sight_wherever_it_is_beside_a_large_picture(aspect: float) -> None:
+    """At x = 7 m it had gone behind the column."""
+    half = math.tan(0.5 * FIELD) * np.array((aspect, 1.0))
+    for x, y, z in itertools.product((-9.0, -5.0, 0.0, 5.0, 9.0), (-9.0, -4.0, 0.0, 4.0), (0.0, 1.2, 6.0)):
+        p = START.changed({"position": (x, y, z)})
+        home = SIM.home(p, solve(p))
+        back = np.subtract(home.position, home.look_at)
+        back = back / np.linalg.norm(back)
+        eye = home.look_at + back * home.radius / math.sin(math.atan(half.min()))
+        right = np.cross(-back, (0.0, 0.0, 1.0))
+        right = right / np.linalg.norm(right)
+        for place in (p.position, (x, y, z + LIFT)):
+            away = np.subtract(place, eye)
+            slopes = np.abs([right @ away, np.cross(right, -back) @ away]) / (-back @ away)
+            assert (slopes < half).all(), (x, y, z, slopes / half)
