@@ -103,6 +103,10 @@ class CameraParams(Params):
                 return -200.0 * max(wide, 1.0), 200.0 * max(wide, 1.0)
         return super().bounds(name)
 
+    def label(self, name: str) -> str:
+        unused = self.projection == "orthographic" and name in ("fx", "fy")
+        return super().label(name) + ", not used" * unused
+
     def moved(self, changes: Mapping[str, Any]) -> Self:
         moving = [name for name in ("fx", "fy") if name in changes]
         if self.linked and len(moving) == 1:

@@ -254,9 +254,9 @@ def figure(pane: Pane) -> str:
 
 
 def still(pane: Pane) -> str:
-    """Its picture for a page on which nothing can be held: marks that could be are said as places."""
+    """Its picture with the line over it, for a page on which nothing can be held: marks are said as places."""
     svg = re.sub(r' (data-(handle|pick)|tabindex|aria-roledescription)="[^"]*"', "", pane.svg)
-    return (
+    return pane.line + (
         svg.replace('role="application"', 'role="img"')
         .replace('role="button"', 'role="img"')
         .replace(" Arrow keys move it.", "")

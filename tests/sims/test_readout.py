@@ -9,7 +9,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, math, mathml, quantity, render, row, symbol
+from sims.kit.readout import (
+    Chain,
+    Formula,
+    Link,
+    Note,
+    Readout,
+    Table,
+    figure,
+    math,
+    mathml,
+    quantity,
+    render,
+    row,
+    symbol,
+)
 from tests.sims.markup import bad_numbers, mistakes, words, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -133,8 +147,9 @@ def test_a_warning_has_an_icon_that_screen_readers_skip(level: str, icon: bool) 
         Formula(HOSTILE, symbol(HOSTILE, HOSTILE), mathml(1.0), HOSTILE).html(),
         Table(HOSTILE, [(HOSTILE, HOSTILE), (HOSTILE, HOSTILE)]).html(),
         Note(HOSTILE, "warn").html(),
+        Chain(HOSTILE, [Link(HOSTILE, HOSTILE, HOSTILE, HOSTILE)]).html(),
     ],
-    ids=["formula", "table", "note"],
+    ids=["formula", "table", "note", "chain"],
 )
 def test_words_are_escaped(html: str) -> None:
     assert "<script" not in html
@@ -160,3 +175,11 @@ def test_rows_after_those_that_can_be_selected_may_light_up_and_are_no_buttons()
     assert [len(list(e.iter("button"))) for e in rows] == [1, 0, 0]
     assert [e.get("class") for e in rows] == ["s3-selected", None, None]
     assert "True &amp; fair" in table.html()
+
+
+def test_a_chain_has_each_step_with_what_leads_to_it() -> None:
+    chain = Chain("The way", [Link("", "world", "(1, 2)"), Link("K", "pixel", "(3, 4)", "fx fy")])
+    assert not mistakes(chain.html())
+    steps = list(xml(chain.html()).iter("li"))
+    assert [[part.text for part in step] for step in steps] == [["world", "(1, 2)"], ["K", "pixel", "(3, 4)"]]
+    assert [step.get("data-link") for step in steps] == [None, "fx fy"]
