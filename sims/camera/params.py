@@ -105,7 +105,7 @@ class CameraParams(Params):
 
     def label(self, name: str) -> str:
         unused = self.projection == "orthographic" and name in ("fx", "fy")
-        return super().label(name) + ", not used" * unused
+        return super().label(name) + " – unused" * unused
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         moving = [name for name in ("fx", "fy") if name in changes]
