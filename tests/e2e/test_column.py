@@ -193,6 +193,10 @@ def test_parts_that_change_keep_the_focus_and_what_is_open(column: Open) -> None
     assert frame.get_by_text("In pixel widths.").is_visible()
 
 
+POSED = ("li", "position pan tilt roll")
+"""The step of a chain to which position and angles lead."""
+
+
 def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) -> None:
     learner = column("camera/embed")
     frame = learner.frame
@@ -201,12 +205,12 @@ def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) ->
         return {(tag, link) for tag, link in frame.evaluate(LIT)}
 
     frame.locator('[data-control="fx"]').hover()
-    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx")})
+    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx"), ("li", "fx fy cx cy skew")})
     frame.locator('mtd[data-link="position"]').first.hover()
-    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position")})
+    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position"), POSED})
     learner.control("slider", "tilt").focus()
     learner.page.mouse.move(5, 5)
-    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll")})
+    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll"), POSED})
 
 
 def test_a_picture_is_enlarged_stays_live_and_goes_back(column: Open) -> None:
