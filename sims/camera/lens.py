@@ -90,10 +90,12 @@ def pictured(p: CameraParams, model: Camera | AffineCamera, lens: Lens | None) -
     """What the picture shows of the world before the lens bends it."""
     if isinstance(model, AffineCamera):
         return see(AffineCamera(scaled(p, model.perspective), model.depth), frame(*size(p)))
-    return see(scaled(p, model), frame(*size(p)) if lens is None else _box(lens.scaled(p), size(p)))
+    camera = scaled(p, model)
+    if lens is None:
+        return see(camera, frame(*size(p)))
+    return see(camera, _box(tuple(camera.K.ravel().tolist()), lens.distortion, size(p)))
 
 
-@lru_cache(maxsize=64)
 def _border(width: int, height: int) -> Array:
     left, top, right, bottom = frame(width, height)
     u, v = np.linspace(left, right, BORDER), np.linspace(top, bottom, BORDER)
@@ -101,11 +103,13 @@ def _border(width: int, height: int) -> Array:
     return np.concatenate([*sides, *(np.column_stack([np.full(BORDER, w), v]) for w in (left, right))])
 
 
-def _box(lens: Lens, size: tuple[int, int]) -> Box:
-    """Round all of the straight picture that the lens shows within the frame."""
+@lru_cache(maxsize=64)
+def _box(K: tuple[float, ...], distortion: Distortion, size: tuple[int, int]) -> Box:
+    """Round all of the straight picture that the lens of a camera with K, by rows, shows within the frame."""
+    lens = Lens(Camera(np.reshape(K, (3, 3)), np.eye(4)), distortion)
     seen = lens.straighten(_border(*size))
     if np.isnan(seen).any():  # the lens shows less than the frame has room for
-        (fx, skew, cx), (_, fy, cy), _ = lens.camera.K.tolist()
-        reach = min(lens.distortion.reach, WIDEST)
+        fx, skew, cx, _, fy, cy, *_ = K
+        reach = min(distortion.reach, WIDEST)
         return cx - (fx + abs(skew)) * reach, cy - fy * reach, cx + (fx + abs(skew)) * reach, cy + fy * reach
     return (*np.min(seen, axis=0).tolist(), *np.max(seen, axis=0).tolist())
