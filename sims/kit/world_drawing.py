@@ -114,7 +114,7 @@ def _ground(P: Array, box: Box) -> Pixels:
     a, b, c = ground_line(P)
     left, top, right, bottom = box
     corners = [(u, v, a * u + b * v + c) for u, v in ((left, top), (right, top), (right, bottom), (left, bottom))]
-    return [(u, v) for u, v, _ in clip_polygon(corners, 2)] if (a, b, c) != (0.0, 0.0, 0.0) else []
+    return [(u, v) for u, v, _ in clip_polygon(corners, [2])] if (a, b, c) != (0.0, 0.0, 0.0) else []
 
 
 def _bent(rings: Sequence[Pixels], bend: Callable[[Array], Array]) -> list[Pixels]:
