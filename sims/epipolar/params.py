@@ -33,6 +33,8 @@ OTHERS: Array = np.array(
 
 CAMERAS, ESTIMATE = "The cameras", "F estimated from noisy points"
 """Titles of folds."""
+ESTIMATE_ACTION, ENOUGH = "Estimate F, new noise", 12
+"""The button that estimates F, and how many points it shows: as many as that takes, and some more."""
 
 
 class EpipolarParams(Params):
@@ -70,6 +72,12 @@ class EpipolarParams(Params):
     """Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off"""
     seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample", group=ESTIMATE)] = 0
     """Seed of the noise: the same seed, the same noise"""
+    trail: Annotated[tuple[float, float] | None, Vector(0.01, 30.0, step=0.1, unit="m", title="Trail", hidden=True)] = (
+        None
+    )
+    """Depths between which P has slid along the left ray: that piece of it is marked"""
+    candidate: Annotated[Pixel | None, Vector((0.0, 0.0), LAST, step=1, unit="px", title="Free p′", hidden=True)] = None
+    """A pixel of the right picture, q′, that is tried as the partner of p"""
     pick: Annotated[
         str | None,
         Text(
