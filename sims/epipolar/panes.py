@@ -12,13 +12,15 @@ from geometry.arrays import Array
 from sims.epipolar import numbers
 from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import in_picture
-from sims.epipolar.params import LAST, EpipolarParams, Pixel, Side, title
+from sims.epipolar.params import LAST, WORLD, EpipolarParams, Pixel, Place, Side, title
 from sims.epipolar.plan import plan
 from sims.epipolar.ray import Trail
+from sims.epipolar.rig import camera
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure, quantity
+from sims.kit.world_drawing import draw_in_picture
 
 FIRST = "1"
 """What the 3D point is linked as; the others are by their numbers too."""
@@ -37,7 +39,8 @@ def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
     pixel, pixels = (s.pixel_left, s.pixels_left) if left else (s.pixel_right, s.pixels_right)
     epipole, at = (s.epipole_left, s.epipole_left_pixel) if left else (s.epipole_right, s.epipole_right_pixel)
     still = lines[1:].tobytes() if p.show_all_lines and lines is not None else b""
-    others = _others(side, pixels[1:].tobytes(), still, p.selected)
+    rig = (p.left, p.left_pan, p.focal) if left else (p.right, p.right_pan, p.focal)
+    others = _others(side, rig, pixels[1:].tobytes(), still, p.selected)
     picture = others.picture.copy()
     _lines(picture, p, s, side, line, lines)
     if p.noise > 0.0:
@@ -93,10 +96,15 @@ def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark:
     return f"{point}; e{mark} ∞" if epipole is None else point
 
 
-@lru_cache(maxsize=2)
-def _frame(side: Side) -> Picture:
-    """A picture with its coordinates alone: columns run to the right and rows down, from the top left."""
+Rig = tuple[Place, float, float]
+"""Centre, pan and focal length of a camera."""
+
+
+@lru_cache(maxsize=64)
+def _world(side: Side, rig: Rig) -> Picture:
+    """What a camera sees, with its coordinates: columns run to the right and rows down, from the top left."""
     picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
+    draw_in_picture(picture, camera(*rig), WORLD)
     picture.pickable(f"pick_{side}", f"{side.capitalize()} picture")
     picture.text((8, 26), "0, 0", "ghost", size=22, fine=True)
     picture.text((WIDTH - 10, 26), f"u {LAST[0]:.0f}", "ghost", anchor="end", size=22, fine=True)
@@ -129,9 +137,9 @@ class Others(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _others(side: Side, pixels: bytes, lines: bytes, selected: int) -> Others:
+def _others(side: Side, rig: Rig, pixels: bytes, lines: bytes, selected: int) -> Others:
     """A picture with the points that stay where they are while the 3D point is moved; `lines` are those shown."""
-    picture = _frame(side).copy()
+    picture = _world(side, rig).copy()
     seen = list(enumerate(np.frombuffer(pixels).reshape(-1, 2).tolist(), start=2))
     inside = [(f"{k}", (u, v)) for k, (u, v) in seen if in_picture(u, v)]
     boxes = numbers.placed(inside, np.frombuffer(lines).reshape(-1, 3).tolist())

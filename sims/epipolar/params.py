@@ -11,6 +11,7 @@ from geometry.arrays import Array
 from sims.kit.fields import NumberBox, Slider, Switch, Text, Vector
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params
+from sims.kit.world import PLACES, TITLES
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
@@ -22,12 +23,13 @@ LAST_SEED = 9999
 LEFT: Place = (-0.6, 0.0, 1.0)
 RIGHT: Place = (0.6, 0.0, 1.0)
 POINT: Place = (0.3, 4.0, 1.2)
-OTHERS: Array = np.array(
-    [
-        (-0.7, 3.6, 0.7), (0.8, 4.6, 1.5), (-0.3, 5.0, 1.7), (0.6, 3.4, 0.6), (-0.9, 4.8, 1.2), (1.0, 5.6, 0.9),
-        (-0.1, 4.2, 0.5), (-0.6, 3.9, 1.6), (0.0, 5.8, 1.5), (-0.5, 5.6, 0.3), (0.9, 3.8, 0.9),
-    ]
+WORLD: Place = (0.5, 5.0, 0.0)
+"""Metres that the little world is moved to stand before the cameras."""
+CORNERS = (
+    "roof-near", "cube-left", "near-post", "eave-far-right", "wall-near-left", "eave-near-right", "near-foot",
+    "far-post", "eave-near-left", "wall-near-right", "roof-far",
 )  # fmt: skip
+OTHERS: Array = np.array([PLACES[name] for name in CORNERS]) + WORLD
 """The points after the first, in the world: in sight of both cameras in each preset, and not on one plane."""
 
 
@@ -101,7 +103,7 @@ class EpipolarParams(Params):
 
 def title(number: int) -> str:
     """What a point is called."""
-    return "P, the 3D point" if number == 1 else f"Point {number}"
+    return "P, the 3D point" if number == 1 else f"Point {number}: {TITLES[CORNERS[number - 2]]}"
 
 
 def read_pick(pick: str) -> tuple[Side, Pixel]:

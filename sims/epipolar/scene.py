@@ -6,10 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from geometry.arrays import Array
 from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import CameraDrawing, Segment
-from sims.epipolar.params import OTHERS, EpipolarParams, Place, Side
+from sims.epipolar.params import OTHERS, WORLD, EpipolarParams, Place, Side
 from sims.epipolar.ray import Trail
 from sims.epipolar.readouts import short_trouble
 from sims.epipolar.solution import EpipolarSolution
@@ -18,10 +17,9 @@ from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import View
 from sims.kit.types import ORIGIN
+from sims.kit.world_drawing import draw_in_scene
 
 SPOT = 0.045
-DROPS: Array = np.stack([OTHERS, OTHERS * (1.0, 1.0, 0.0)], axis=1)
-"""From the other points to the ground."""
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
@@ -30,8 +28,8 @@ def seen(p: EpipolarParams, s: EpipolarSolution) -> list[Place]:
     return [p.left, p.right] if s.trail is not None else [p.left, p.right, p.point]
 
 
-SIDE_BY_SIDE = View((4.2, -3.4, 3.9), (0.1, 1.9, 1.0), 2.7)
-BEHIND_EACH_OTHER = View((-4.5, -3.2, 4.4), (0.1, 2.0, 0.9), 3.0)
+SIDE_BY_SIDE = View((4.2, -3.4, 3.9), (0.0, 2.6, 0.9), 3.2)
+BEHIND_EACH_OTHER = View((-4.5, -3.2, 4.4), (0.0, 2.5, 0.8), 3.5)
 """From the other side: from that of the first the epipolar plane is seen edge-on."""
 
 
@@ -45,7 +43,8 @@ class EpipolarScene:
     """World coordinates, but for what lies on a camera's picture."""
 
     def __init__(self, stage: Stage) -> None:
-        stage.ground(size=16.0, cell=0.5)
+        stage.ground(size=24.0, cell=0.5)
+        draw_in_scene(stage, WORLD)
         self.cameras = CameraInScene(stage, "left", "L", "e"), CameraInScene(stage, "right", "R", "e′")
         self.baseline = stage.lines("/baseline", "ink", width=2.5)
         self.middle = stage.group("/middle")
@@ -60,7 +59,6 @@ class EpipolarScene:
         for k, (ball, place) in enumerate(zip(self.others, OTHERS.tolist(), strict=True), start=2):
             ball.pose(position=place)
             stage.link(ball, f"{k}")
-        self.drops = stage.lines("/drops", "ghost", width=1.0)
         self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
         self.held = stage.grip("/point", 0.06, halo=2.4)
         stage.link(self.held, "1")
@@ -100,7 +98,6 @@ class EpipolarScene:
     def _points(self, p: EpipolarParams) -> None:
         self.held.pose(position=p.point)
         self.drop.stroke((ORIGIN, (0.0, 0.0, -p.point[2])))
-        self.drops.pieces(DROPS[: p.points - 1])
         for k, ball in enumerate(self.others, start=2):
             ball.show(k <= p.points)
 
