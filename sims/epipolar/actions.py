@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from sims.epipolar import ray
-from sims.epipolar.params import ENOUGH, LAST, LAST_SEED, LEFT, POINT, RIGHT, EpipolarParams, Side
+from sims.epipolar.params import ENOUGH, LAST, LAST_SEED, LEFT, POINT, RIGHT, SIGHT, EpipolarParams, Side
 from sims.epipolar.rig import camera
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.sim import Step
@@ -14,7 +14,7 @@ from sims.kit.spelling import plain
 
 PRESETS: dict[str, dict[str, Any]] = {
     "rectified": {"left": LEFT, "right": RIGHT, "left_pan": 0.0, "right_pan": 0.0},
-    "sight": {"left": (-0.4, 0.9, 0.9), "right": (0.5, -0.8, 1.2), "left_pan": -8.0, "right_pan": 8.0},
+    "sight": {**SIGHT},
     "converging": {"left": (-1.2, 0.4, 1.0), "right": (1.2, 0.4, 1.0), "left_pan": -18.0, "right_pan": 18.0},
     "forward": {"left": (0.0, -0.6, 1.0), "right": (0.0, 0.9, 1.0), "left_pan": 0.0, "right_pan": 0.0},
     "vertical": {"left": (0.0, 0.0, 0.65), "right": (0.0, 0.0, 1.45), "left_pan": 0.0, "right_pan": 0.0},

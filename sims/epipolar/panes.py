@@ -19,7 +19,7 @@ from sims.epipolar.rig import camera
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
-from sims.kit.readout import figure, quantity
+from sims.kit.readout import figure
 from sims.kit.world_drawing import draw_in_picture
 
 FIRST = "1"
@@ -56,7 +56,7 @@ def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
         _candidate(picture, tried, _corner(tried.pixel, line, others))
     if s.picked is not None and s.picked.side == side:
         picture.handle(f"pick_{side}", s.picked.pixel, "Picked pixel", "")
-    return picture.pane(_note(s, pixel, at, mark) if tried is None else _candidate_note(tried))
+    return picture.pane(_note(s, pixel, at, mark) if tried is None else _place("q′", tried.pixel))
 
 
 def _trail(picture: Picture, trail: Trail) -> None:
@@ -74,23 +74,18 @@ def _corner(pixel: Pixel, line: Array | None, others: Others) -> numbers.Way:
 
 def _candidate(picture: Picture, c: Candidate, corner: numbers.Way) -> None:
     """The free pixel, and how far it is from the line."""
-    if c.foot is not None and c.distance is not None and c.verdict == "off the line":
+    if c.foot is not None and c.verdict == "off the line":
         picture.line(c.pixel, c.foot, "held", width=2, dash="3 3")
-        middle = [0.5 * (a + b) for a, b in zip(c.pixel, c.foot, strict=True)]
-        picture.text(
-            (middle[0] - 10, middle[1] + 8), quantity(abs(c.distance), "px", 1), "held", anchor="end", fine=True
-        )
     picture.handle("candidate", c.pixel, "Free pixel q′ in the right picture", "q′", corner=corner)
 
 
-def _candidate_note(c: Candidate) -> str:
-    place = f"q′ {figure(c.pixel[0], 0)}, {figure(c.pixel[1], 0)}"
-    return place if c.distance is None else f"{place}; {quantity(abs(c.distance), 'px', 1)} off"
+def _place(letter: str, pixel: Pixel) -> str:
+    return f"{letter} {figure(pixel[0], 0)}, {figure(pixel[1], 0)}"
 
 
 def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark: str) -> str:
     """Short: small panes have room for a few words."""
-    point = f"no p{mark}" if pixel is None else f"p{mark} {figure(pixel[0], 0)}, {figure(pixel[1], 0)}"
+    point = f"no p{mark}" if pixel is None else _place(f"p{mark}", pixel)
     if s.F is None:
         return f"{point}; no e{mark}"
     return f"{point}; e{mark} ∞" if epipole is None else point

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import field_validator
@@ -23,10 +24,10 @@ LAST_SEED = 9999
 LEFT: Place = (-0.6, 0.0, 1.0)
 RIGHT: Place = (0.6, 0.0, 1.0)
 POINT: Place = (0.3, 4.0, 1.2)
-WORLD: Place = (0.5, 5.0, 0.0)
+WORLD: Place = (0.3, 5.0, 0.0)
 """Metres that the little world is moved to stand before the cameras."""
 CORNERS = (
-    "roof-near", "cube-left", "near-post", "eave-far-right", "wall-near-left", "eave-near-right", "near-foot",
+    "roof-near", "cube-left", "near-post", "eave-far-right", "near-foot", "eave-near-right", "wall-near-left",
     "far-post", "eave-near-left", "wall-near-right", "roof-far",
 )  # fmt: skip
 OTHERS: Array = np.array([PLACES[name] for name in CORNERS]) + WORLD
@@ -39,8 +40,14 @@ ESTIMATE_ACTION, ENOUGH = "Estimate F, new noise", 12
 """The button that estimates F, and how many points it shows: as many as that takes, and some more."""
 
 
+SIGHT: Mapping[str, Any] = {"left": (-0.4, 0.9, 0.9), "right": (0.5, -0.8, 1.2), "left_pan": -8.0, "right_pan": 8.0}
+"""The right camera sees the left one: an epipole is in its picture."""
+
+
 class EpipolarParams(Params):
     """State of the sim."""
+
+    opening: ClassVar[Mapping[str, Any]] = SIGHT
 
     left: Annotated[
         Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera", group=CAMERAS)

@@ -53,8 +53,8 @@ def caption(p: EpipolarParams, s: EpipolarSolution) -> str:
     if s.epipole_left_pixel is not None and in_picture(*s.epipole_left_pixel):
         return "All lines run through the epipole: there each camera would see the other one."
     if s.trail is not None:
-        return "P slid along one ray: p stayed where it is, and p′ ran along its line. Depth alone moves it."
-    return "Slide P along the left ray: p stays where it is, and p′ runs along one line, its epipolar line."
+        return "P slid along one ray: p stayed where it is, and p′ ran along its line."
+    return "Slide P along the left ray: p stays where it is, and p′ runs along one line."
 
 
 def judged(c: Candidate) -> str:
