@@ -30,7 +30,7 @@ class Box:
     u: float
     v: float
     half: float
-    """Of its width; its height is that of a figure."""
+    """Half its width; its height is that of a figure."""
 
     def covers(self, at: Pixel, radius: float) -> bool:
         """Whether it reaches into a disc."""

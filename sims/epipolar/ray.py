@@ -38,28 +38,24 @@ class Trail:
     steps: Array
     """Places (n, 3) on it at each whole metre of depth."""
     pixels: tuple[Pixel, Pixel] | None
-    """Of its ends in the right picture: of what is before the right camera, if anything is."""
+    """Its ends in the right picture, as far as it is before the right camera."""
     step_pixels: Array
-    """Of its steps (n, 2): NaN behind the right camera."""
+    """Its steps there (n, 2): NaN behind the right camera."""
 
 
-def trail(p: EpipolarParams, both: Pair) -> Trail | None:
-    """The piece of the ray along which P has slid, with where it is now; None where it hasn't, or there is no p."""
-    depth = depth_of(p)
+def trail(p: EpipolarParams, both: Pair, depth: float) -> Trail | None:
+    """The piece of the ray along which P has slid, with the depth at which it is now; None where there is none."""
     if p.trail is None or depth < LEAST:
         return None
     near, far = min(*p.trail, depth), max(*p.trail, depth)
     start, along = np.array(p.left), _direction(p, depth)
-    whole = np.arange(math.ceil(near), math.floor(far) + 1.0)
-    steps = start + whole[:, None] * along
-    seen = _before(both, p.left, start + along, near, far)
-    pixels = None if seen is None else both.right.project(start + np.array(seen)[:, None] * along)[0].tolist()
-    a, b = (start + at * along for at in (near, far))
-    return Trail(
-        near, far, (_place(a), _place(b)), steps,
-        None if pixels is None else ((pixels[0][0], pixels[0][1]), (pixels[1][0], pixels[1][1])),
-        both.right.project(steps)[0],
-    )  # fmt: skip
+    seen = _before(both, start, along, near, far)
+    whole = range(math.ceil(near), math.floor(far) + 1)
+    places = start + np.array([near, far, *(seen or (near, far)), *whole])[:, None] * along
+    pixels, _ = both.right.project(places[2:])
+    (a, b), (u, v) = places[:2].tolist(), pixels[:2].tolist()
+    ends = (u[0], u[1]), (v[0], v[1])
+    return Trail(near, far, ((a[0], a[1], a[2]), (b[0], b[1], b[2])), places[4:], ends if seen else None, pixels[2:])
 
 
 def depth_of(p: EpipolarParams) -> float:
@@ -107,9 +103,9 @@ def _swept(p: EpipolarParams) -> tuple[float, float]:
     along = _direction(p, now)
     near, far = SWEPT
     right = camera(p.right, p.right_pan, p.focal)
-    first, second = (float(right.project(np.array(p.left) + at * along)[1]) for at in (0.0, 1.0))
-    if second > first:
-        near = max(near, (AHEAD - first) / (second - first))
+    first, step = float(right.R[2] @ p.left + right.t[2]), float(right.R[2] @ along)
+    if step > 0.0:
+        near = max(near, (AHEAD - first) / step)
     return min(near, now), max(far, now)
 
 
@@ -129,14 +125,13 @@ def _limits(p: EpipolarParams, along: Array) -> list[float]:
     return [FARTHEST, *found]
 
 
-def _before(both: Pair, left: Place, deeper: Array, near: float, far: float) -> tuple[float, float] | None:
-    """Of the depths from near to far those that are before the right camera; `deeper` is at a depth of one."""
-    start, one = (float(both.right.project(place)[1]) for place in (left, deeper))
-    step = one - start
+def _before(both: Pair, start: Array, along: Array, near: float, far: float) -> tuple[float, float] | None:
+    """Which of the depths from near to far on a ray are before the right camera."""
+    first, step = float(both.right.R[2] @ start + both.right.t[2]), float(both.right.R[2] @ along)
     if step:
-        edge = (BEFORE - start) / step
+        edge = (BEFORE - first) / step
         near, far = (max(near, edge), far) if step > 0.0 else (near, min(far, edge))
-    return (near, far) if near <= far and start + near * step >= 0.5 * BEFORE else None
+    return (near, far) if near <= far and first + near * step >= 0.5 * BEFORE else None
 
 
 def _place(at: Array) -> Place:

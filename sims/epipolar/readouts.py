@@ -89,7 +89,7 @@ def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
 
 
 def _constraint(s: EpipolarSolution) -> Iterator[Formula]:
-    """Of q′ where there is one, else of p′."""
+    """How q′, or where there is none p′, keeps the constraint."""
     c = s.candidate
     name, letter = (RIGHT_PIXEL, "p′") if c is None else (CANDIDATE, "q′")
     residual = s.residual if c is None else c.residual

@@ -110,7 +110,7 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
         depth_right=float(depth_right),
         on_baseline=aligned,
         picked=picked,
-        trail=trail(p, both),
+        trail=trail(p, both, float(depth_left)),
         candidate=candidate(p, both, left, lines[1]),
         estimate=estimate(p, both, together),
         drawn=_drawn(p, both, (pixel_left, pixel_right), lines, picked, aligned),

@@ -425,7 +425,7 @@ def test_a_trail_is_where_the_right_camera_sees_the_ray(p: EpipolarParams, one: 
 
 
 def skew_distance(p: EpipolarParams, s: EpipolarSolution, pixel: tuple[float, float]) -> float:
-    """Of the lines of sight, by the textbook's formula."""
+    """How far the lines of sight are apart, by the textbook's formula."""
     ways = []
     for side, (u, v) in (("left", s.pixel_left or (0.0, 0.0)), ("right", pixel)):
         R, _ = pose(p, side)
