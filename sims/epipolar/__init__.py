@@ -6,12 +6,13 @@ the point is in one picture, it must be on that line in the other. F says so in 
 
 from __future__ import annotations
 
-from sims.epipolar import actions, candidate, plan, ray
+from sims.epipolar import actions, calibration, candidate, plan, ray
 from sims.epipolar.panes import panes
-from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, EpipolarParams
+from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, OWN, EpipolarParams
 from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
 from sims.epipolar.scene import SIDE_BY_SIDE, EpipolarScene, seen, view_of
 from sims.epipolar.solution import EpipolarSolution, solve
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Dial, Objective, Sim
 
 __all__ = ["CONTRACT", "SIM", "EpipolarParams", "EpipolarSolution", "solve"]
@@ -31,7 +32,7 @@ SIM = Sim(
     scene=EpipolarScene,
     caption=caption,
     readouts=readouts,
-    folds=(MATRICES, LINES, POINTS, ESTIMATE,),
+    folds=(MATRICES, LINES, POINTS, ESTIMATE, OWN),
     describe=describe,
     view=SIDE_BY_SIDE,
     view_of=view_of,
@@ -78,7 +79,12 @@ SIM = Sim(
         "plan_right": plan.hold("right"),
         "plan_point": plan.hold("point"),
     },
+    paste=Paste(
+        OWN, "Calibration of two cameras", "K1, K2, R and T as OpenCV, Kalibr’s camchain, or both ROS files have them",
+        calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".txt"),
+    ),
     states={
+        "own pair": {"own": tuple(calibration.read(calibration.EXAMPLE)), "own_left": (300.0, 200.0)},
         "converging": {**actions.PRESETS["converging"], "show_all_lines": True, "points": 12},
         "forward": {**actions.PRESETS["forward"], "show_all_lines": True},
         "vertical": {**actions.PRESETS["vertical"], "show_all_lines": True},
@@ -110,10 +116,13 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="left right left_pan right_pan focal point points show_plane show_all_lines pick",
+    parameters=(
+        "left right left_pan right_pan focal point points show_plane show_all_lines pick trail candidate own own_left"
+        " own_right"
+    ),
     solution=(
         "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"
-        " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson"
+        " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson trail candidate own"
     ),
     link=(
         "left=-0.5,0,1.2&right=0.5,0.1,1&left_pan=-10&right_pan=12.5&focal=700&point=0.2,3.5,1.1"

@@ -34,7 +34,7 @@ OTHERS: Array = np.array([PLACES[name] for name in CORNERS]) + WORLD
 """The points after the first, in the world: in sight of both cameras in each preset, and not on one plane."""
 
 
-CAMERAS, ESTIMATE = "The cameras", "F estimated from noisy points"
+CAMERAS, ESTIMATE, OWN = "The cameras", "F estimated from noisy points", "Your own stereo pair"
 """Titles of folds."""
 ESTIMATE_ACTION, ENOUGH = "Estimate F, new noise", 12
 """The button that estimates F, and how many points it shows: as many as that takes, and some more."""
@@ -87,6 +87,15 @@ class EpipolarParams(Params):
     """Depths between which P has slid along the left ray: that piece of it is marked"""
     candidate: Annotated[Pixel | None, Vector((0.0, 0.0), LAST, step=1, unit="px", title="Free p′", hidden=True)] = None
     """A pixel of the right picture, q′, that is tried as the partner of p"""
+    own: Annotated[
+        tuple[float, float, float, float, float, float, float, float, float, float, float, float, float, float] | None,
+        Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True),
+    ] = None
+    """Both calibrations: fx, fy, cx, cy of the left and the right camera, the rotation vector in degrees, and T"""
+    own_left: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your left pixel", group=OWN)] = (0.0, 0.0)
+    """A pixel of your left picture, free of distortion: u, v"""
+    own_right: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your right pixel", group=OWN)] = (0.0, 0.0)
+    """The pixel of your right picture that may be its partner: u, v"""
     pick: Annotated[
         str | None,
         Text(

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from functools import lru_cache
 
-from geometry.arrays import Array
-from geometry.eight_point import FEWEST
 from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import in_picture
-from sims.epipolar.estimate import Estimate
-from sims.epipolar.params import ENOUGH, ESTIMATE, ESTIMATE_ACTION, OTHERS, EpipolarParams, Pixel
+from sims.epipolar.estimate import readouts as estimate_readouts
+from sims.epipolar.own import readouts as own_readouts
+from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, significant, symbol
+from sims.kit.readout import (
+    Fold,
+    Formula,
+    Note,
+    Readout,
+    Table,
+    figure,
+    mathml,
+    quantity,
+    row,
+    significant,
+    spelled,
+    symbol,
+)
 
 MATRICES, LINES, POINTS = "F and E", "Pixels, lines and epipoles", "All points"
 RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
@@ -85,7 +96,9 @@ def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
     yield Fold(POINTS)
     yield _points(p, s)
     yield Fold(ESTIMATE)
-    yield from _estimate(p, s)
+    yield from estimate_readouts(p, s.estimate)
+    yield Fold(OWN)
+    yield from own_readouts(s.own)
 
 
 def _constraint(s: EpipolarSolution) -> Iterator[Formula]:
@@ -153,11 +166,6 @@ def _matrices(s: EpipolarSolution) -> Iterator[Readout]:
     yield Formula("Essential matrix, of norm 1", symbol("E"), mathml(s.E), copy=spelled(s.E))
 
 
-def spelled(matrix: Array) -> str:
-    """A matrix with all its digits, as Python, JavaScript and others read it."""
-    return json.dumps((matrix + 0.0).tolist())
-
-
 def _lines(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
     if s.line_left is not None:
         yield Formula("Line of p′ in the left picture: a, b, c", symbol("l"), row(s.line_left.tolist()))
@@ -193,31 +201,6 @@ def _epipoles(s: EpipolarSolution) -> Iterator[Readout]:
 def far_away(pixel: Pixel) -> bool:
     """Whether a pixel's place says nothing but that it is far."""
     return max(map(abs, pixel)) > FARTHEST
-
-
-def _estimate(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
-    e = s.estimate
-    if e.status == "few":
-        more = "" if p.points >= FEWEST else f" “{ESTIMATE_ACTION}” shows {ENOUGH}."
-        yield Note(f"To estimate F takes 8 points that both cameras see; here are {e.seen}.{more}")
-    elif e.status == "ambiguous":
-        yield Note("These pixels fit more than one F: no estimate.", "warn")
-    elif e.F is not None and e.conditioning is not None:
-        words = f"F estimated from {e.seen} points with {quantity(p.noise, 'px', 2)} of noise"
-        yield Formula(words, "<mover><mi>F</mi><mo>^</mo></mover>", significant(e.F), copy=spelled(e.F))
-        yield _errors(e)
-        if e.difference is not None:
-            yield Formula("Frobenius norm of the error of E that this means", symbol("Δ"), mathml(e.difference))
-        yield Formula("Conditioning of the equations, σ₈ : σ₁", symbol("κ"), mathml(e.conditioning, 4))
-
-
-def _errors(e: Estimate) -> Table:
-    rows = [("F", "noisy pixels", "exact pixels")]
-    if e.noisy_rms_true is not None:
-        rows.append(("true", figure(e.noisy_rms_true, 3), figure(0.0, 3)))
-    if e.noisy_rms is not None and e.exact_rms is not None:
-        rows.append(("estimated", figure(e.noisy_rms, 3), figure(e.exact_rms, 3)))
-    return Table("Sampson distance in pixels, root mean square", rows)
 
 
 def describe(p: EpipolarParams, s: EpipolarSolution) -> str:

@@ -70,7 +70,11 @@ def _orientation(pan: float) -> Quaternion:
 def pair(left: Place, right: Place, left_pan: float, right_pan: float, focal: float) -> Pair:
     """Both cameras, and their epipolar geometry if they have any."""
     first, second = camera(left, left_pan, focal), camera(right, right_pan, focal)
-    turned = _orientation(left_pan), _orientation(right_pan)
+    return related(first, second, (_orientation(left_pan), _orientation(right_pan)))
+
+
+def related(first: Camera, second: Camera, turned: tuple[Quaternion, Quaternion]) -> Pair:
+    """Two cameras with their orientations, and their epipolar geometry if they have any."""
     try:
         E = normalize(essential(first, second))
     except GeometryError:  # both at one place

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -96,6 +97,11 @@ def _scientific(value: float, digits: int, least: float) -> str:
         return number
     exponent = f"<mn>{power.lstrip('+0')}</mn>" if int(power) > 0 else f"<mn>{MINUS}{power[1:].lstrip('0')}</mn>"
     return f"<mrow>{number}<mo>·</mo><msup><mn>10</mn>{exponent}</msup></mrow>"
+
+
+def spelled(matrix: npt.ArrayLike) -> str:
+    """A matrix with all its digits, as Python, JavaScript and others read it."""
+    return json.dumps((np.asarray(matrix, dtype=float) + 0.0).tolist())
 
 
 def row(values: Sequence[float], digits: int = 3) -> str:
