@@ -72,16 +72,16 @@ def readouts(pair: OwnPair | None) -> Iterator[Readout]:
         f"The right camera is turned by {quantity(pair.angle, '°', 2)}, and {figure(pair.baseline)} away, in T’s unit."
         " Pixels are those of your pictures, once free of distortion."
     )
-    yield Formula("Fundamental matrix of your pair", symbol("F", "own"), significant(pair.F), copy=spelled(pair.F))
-    yield Formula("Essential matrix of your pair", symbol("E", "own"), significant(pair.E), copy=spelled(pair.E))
+    yield Formula("Fundamental matrix of your pair", symbol("F"), significant(pair.F), copy=spelled(pair.F))
+    yield Formula("Essential matrix of your pair", symbol("E"), significant(pair.E), copy=spelled(pair.E))
     for side, pixel in (("Left", pair.epipole_left), ("Right", pair.epipole_right)):
         where = "at infinity" if pixel is None else f"at {figure(pixel[0], 1)}, {figure(pixel[1], 1)}{THIN}px"
         yield Note(f"{side} epipole {where}.")
     if pair.line_right is None or pair.distance is None:
         yield Note("Your left pixel is the epipole: every pixel may be its partner.", "near")
         return
-    yield Formula("Line of your left pixel: a, b, c", symbol("l", "own"), row(pair.line_right.tolist()))
-    yield Formula("Your right pixel off that line", symbol("d", "own"), mathml(abs(pair.distance), 2), "px")
+    yield Formula("Line of your left pixel: a, b, c", symbol("l"), row(pair.line_right.tolist()))
+    yield Formula("Your right pixel off that line", symbol("d"), mathml(abs(pair.distance), 2), "px")
 
 
 @lru_cache(maxsize=64)

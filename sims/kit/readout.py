@@ -74,7 +74,7 @@ def _entry(i: int, k: int, rows: int, roles: tuple[str, ...], links: Links) -> s
     return (f' class="s3-{role}{end}"' if role else "") + (f' data-link="{escape(link)}"' if link else "")
 
 
-def significant(value: npt.ArrayLike, digits: int = 6) -> str:
+def significant(value: npt.ArrayLike, digits: int = 5) -> str:
     """A matrix in MathML whose entries differ by powers of ten: each with its own, and as many digits as the others.
 
     What is below 1e-14 of the largest is rounding: 0.

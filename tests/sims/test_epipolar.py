@@ -538,7 +538,7 @@ def test_the_digits_of_f_that_are_shown_satisfy_the_constraint_and_all_of_them_c
         if np.isfinite(left).all() and np.isfinite(right).all():
             line = F @ [*left, 1.0]
             off = abs(line @ [*right, 1.0]) / math.hypot(line[0], line[1])
-            assert off < 0.01 * max(1.0, float(np.abs([*left, *right]).max()) / 640.0)
+            assert off < 0.05 * max(1.0, float(np.abs([*left, *right]).max()) / 640.0)
     copied = [e.get("value") for e in xml(html).iter("button") if e.get("data-s3") == "copy"]
     assert s.F is not None
     np.testing.assert_array_equal(json.loads(str(copied[0])), s.F)
