@@ -103,7 +103,7 @@ def free(p: EpipolarParams) -> Iterator[Step]:
     u, v = CENTER if pixel is None else within(*pixel)
     a, b = (0.0, 1.0) if line is None else line.tolist()[:2]
     side = -1.0 if a * (u - CENTER[0]) + b * (v - CENTER[1]) > 0.0 else 1.0
-    yield Step({"candidate": (u, v)}, 0.0)
+    yield Step({"candidate": (u, v), "trail": None}, 0.0)
     yield Step(
         {"candidate": within(u + side * AWAY * a, v + side * AWAY * b)}, FREED,
         words="q′ leaves the line of p: the rays of p and q′ no longer meet.",

@@ -65,6 +65,8 @@ def caption(p: EpipolarParams, s: EpipolarSolution) -> str:
         return "All lines run through the epipole: there each camera would see the other one."
     if s.trail is not None:
         return "P slid along one ray: p stayed where it is, and p′ ran along its line."
+    if s.epipole_left_pixel is None and s.epipole_right_pixel is None:
+        return "Both epipoles are at infinity, so all lines are parallel: slide P, and p′ runs along one of them."
     return "Slide P along the left ray: p stays where it is, and p′ runs along one line."
 
 

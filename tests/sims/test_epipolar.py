@@ -607,6 +607,8 @@ def test_it_opens_with_an_epipole_in_a_picture_and_other_links_mean_what_they_me
     s = solve(OPENED)
     assert s.epipole_right_pixel is not None
     assert in_frame(np.array([s.epipole_right_pixel]))
+    assert "Slide P along the left ray" in SIM.caption(OPENED, s)
+    assert "at infinity" in SIM.caption(START, solve(START))
     assert OPENED.query() == ""
     assert EpipolarParams.from_query([("points", "9")]) == START.changed({"points": 9})
     assert EpipolarParams.from_query(START.query_items().items()) == START
