@@ -116,7 +116,8 @@ def _direction(p: EpipolarParams, depth: float) -> Array:
 
 def _limits(p: EpipolarParams, along: Array) -> list[float]:
     """Depths at which the ray leaves the places where P may be."""
-    bounds = EpipolarParams.kinds["point"].each  # type: ignore[attr-defined]
+    kind = EpipolarParams.numeric["point"]
+    bounds = kind.ranges(p.point, kind.bounds)
     found = [
         ((high if step > 0.0 else low) - start) / step
         for start, step, (low, high) in zip(p.left, along.tolist(), bounds, strict=True)
