@@ -25,7 +25,7 @@ from app.trouble import Unknown, error_message
 from sims.kit.entered import entered, number, row
 from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
-from sims.kit.sim import Library, Sim, Step, jsonable
+from sims.kit.sim import Dial, Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
 SOLVED_WITHIN = 20.0
@@ -104,6 +104,9 @@ class Session:
 
     def slide(self, name: str, value: float) -> None:
         """Take what a slider is moved to: of a parameter, or as `angles.2` of one of its entries."""
+        if (dial := self._dial(name)) is not None:
+            self.drag(name, (min(max(value, dial.low), dial.high),))
+            return
         field, dot, part = name.partition(".")
         kind = self.params.kinds.get(field)
         sliders = [each for each in self.params.visible if isinstance(self.params.kinds[each], Slider | Numbers)]
@@ -116,11 +119,17 @@ class Session:
         if name.startswith("/"):
             self._enter_place(name, text)
             return
+        if (dial := self._dial(name)) is not None:
+            self.drag(name, (number(text, (dial.low, dial.high), dial.unit),))
+            return
         try:
             changes = entered(self.sim.offers(self.params, self.solution, *self.given), name, text)
         except LookupError:
             raise Unknown("control, or nothing in it,", f"{name}: {text}", self.params.kinds) from None
         self.change(changes)
+
+    def _dial(self, name: str) -> Dial[Any, Any] | None:
+        return next((dial for dial in self.sim.dials if dial.handle == name), None)
 
     def _enter_place(self, name: str, text: str) -> None:
         """The same for a box, `/grip.2`, of where a node of the scene is; or for all three, `/grip`."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ from sims.kit import controls, pane, readout
 from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.paste import Paste
-from sims.kit.sim import Action, Library, Sim, Typed
+from sims.kit.sim import Action, Dial, Library, Sim, Typed
 from sims.kit.types import Place
 
 PANES = "panes"
@@ -47,6 +48,7 @@ class Column:
             parts |= self._rest(params, solution, places)
             for handle, place in places.items():
                 values |= {f"{handle}.{k}": value for k, value in enumerate(place or (None, None, None))}
+            values |= {dial.handle: dial.value(params, solution) for dial in self.sim.dials}
         return Shown(parts, values)
 
     def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
@@ -76,6 +78,8 @@ class Column:
             found[f"read:{title}"] = readout.render(read.get(title, ()))
         for typed in sim.typed:
             found[f"control:{typed.handle}"] = "" if places[typed.handle] is None else placed(typed)
+        for dial in sim.dials:
+            found[f"control:{dial.handle}"] = "" if dial.value(params, solution) is None else dialled(dial)
         if sim.files is not None:
             preview = sim.files.preview(params, *self._library)
             found["preview"] = "" if preview is None else readout.render([preview])
@@ -103,6 +107,7 @@ class Column:
         first = (
             self._names("") if only is None else [name for name in dict.fromkeys(only) if name in sim.params.visible]
         )
+        yield from (part(f"control:{dial.handle}") for dial in sim.dials if only is None or dial.handle in only)
         yield from (part(f"control:{name}") for name in first)
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
         yield self._actions(wanted)
@@ -158,6 +163,15 @@ def placed(typed: Typed[Any, Any]) -> str:
     """Three boxes for what dragging a node of the scene sets."""
     inside = controls.vector(typed.handle, typed.title, "xyz", (None, None, None), typed.unit, typed.step)
     return controls.control(typed.handle, typed.title, inside, typed.description, kind="s3-line")
+
+
+@lru_cache(maxsize=16)
+def dialled(dial: Dial[Any, Any]) -> str:
+    """A slider for a number that follows from the state."""
+    inside = controls.slider(dial.handle, dial.title, None, (dial.low, dial.high), dial.step, dial.unit)
+    return controls.control(
+        dial.handle, dial.title, inside, dial.description, kind="s3-line", target=f"s-{dial.handle}"
+    )
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:

@@ -128,16 +128,22 @@ class Picture:
             ' click a place, or press Enter for the middle."'
         )
 
-    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "") -> None:
+    def handle(
+        self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "",
+        corner: tuple[int, int] = (1, -1),
+    ) -> None:  # fmt: skip
         """A point that pointer and keyboard can move; the session hears of it under `name`.
 
         `where` says its place where that isn't the pixel. It is highlighted with what else `link` is, and a click on it
-        selects that.
+        selects that. Its letter stands at a `corner`: to the right (1) or left (-1), below (1) or above (-1).
         """
+        right, down = corner
+        anchor = ' text-anchor="end"' if right < 0 else ""
         x, y = float(at[0]), float(at[1])
         mark = (
             f'<circle class="s3-grab" r="{GRAB:g}"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
-            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text>'
+            f'<text x="{22 * right}" y="{-18 if down < 0 else 38}"{anchor} class="s3-halo" fill="var(--held)"'
+            f' font-size="28">{escape(letter)}</text>'
         )
         self._handles.append((x, y, held(name, (x, y), f"{label}: {where or f'{x:.1f}, {y:.1f} pixels'}", mark, link)))
 

@@ -35,6 +35,9 @@ class Params(BaseModel):
     """Those with bounds."""
     visible: ClassVar[tuple[str, ...]] = ()
     """Names of those that have a control."""
+    opening: ClassVar[Mapping[str, Any]] = {}
+    """What differs from the defaults in the state that a link without parameters opens; the link of the defaults
+    themselves then names the first of these."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -113,12 +116,18 @@ class Params(BaseModel):
         return urlencode(self.query_items(), safe=",-.:")
 
     def query_items(self) -> dict[str, str]:
-        """Name and spelling of every field that isn't at its default."""
-        return {
+        """Name and spelling of every field that isn't at its default; none at all of the state that is opened with."""
+        found = {
             name: spell(value)
             for name, field in type(self).model_fields.items()
             if (value := getattr(self, name)) != field.default and value is not None
         }
+        if not self.opening or not found.keys() <= self.opening.keys():
+            return found
+        if all(getattr(self, name) == value for name, value in self.opening.items()):
+            return {}
+        first = next(iter(self.opening))
+        return found or {first: spell(getattr(self, first))}
 
     @classmethod
     def from_query(cls, items: Iterable[tuple[str, str]]) -> Self:
@@ -136,6 +145,8 @@ class Params(BaseModel):
                 given[name] = texts[0]
         state, wrong = cls._read(given)
         complaints += [cls._complaint(name, given.get(name, ""), allowed) for name, allowed in wrong.items()]
+        if not given and not complaints:
+            return cls().changed(cls.opening)
         if complaints or state is None:
             while wrong:  # what is left may be wrong without what went
                 given = {name: text for name, text in given.items() if name not in wrong}

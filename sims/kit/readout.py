@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,6 +10,7 @@ from html import escape
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 MINUS = "−"
 THIN = "\u2009"
@@ -72,6 +74,36 @@ def _entry(i: int, k: int, rows: int, roles: tuple[str, ...], links: Links) -> s
     return (f' class="s3-{role}{end}"' if role else "") + (f' data-link="{escape(link)}"' if link else "")
 
 
+def significant(value: npt.ArrayLike, digits: int = 5) -> str:
+    """A matrix in MathML whose entries differ by powers of ten: each with its own, and as many digits as the others.
+
+    What is below 1e-14 of the largest is rounding: 0.
+    """
+    array = np.asarray(value, dtype=float)
+    least = 1e-14 * np.abs(array).max()
+    body = "".join(
+        f"<mtr>{''.join([f'<mtd>{_scientific(v, digits, least)}</mtd>' for v in entries])}</mtr>"
+        for entries in array.tolist()
+    )
+    return f'<mtable class="s3-matrix s3-long">{body}</mtable>'
+
+
+def _scientific(value: float, digits: int, least: float) -> str:
+    if abs(value) <= least:
+        return "<mn>0</mn>"
+    mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
+    number = f"<mn>{mantissa.replace('-', MINUS)}</mn>"
+    if not int(power):
+        return number
+    exponent = f"<mn>{power.lstrip('+0')}</mn>" if int(power) > 0 else f"<mn>{MINUS}{power[1:].lstrip('0')}</mn>"
+    return f"<mrow>{number}<mo>·</mo><msup><mn>10</mn>{exponent}</msup></mrow>"
+
+
+def spelled(matrix: npt.ArrayLike) -> str:
+    """A matrix with all its digits, as Python, JavaScript and others read it."""
+    return json.dumps((np.asarray(matrix, dtype=float) + 0.0).tolist())
+
+
 def row(values: Sequence[float], digits: int = 3) -> str:
     """A tuple (a, b, c) in MathML."""
     inner = "<mo>,</mo>".join(_number(v, digits) for v in values)
@@ -99,12 +131,21 @@ class Formula:
     unit: str = ""
     link: str = ""
     """What it is highlighted with."""
+    copy: str = ""
+    """What a button copies: the whole number, for other programs."""
 
     def html(self) -> str:
         unit = f"<mtext>{THIN if self.unit != '°' else ''}{escape(self.unit)}</mtext>" if self.unit else ""
         left = f"{self.name}<mo>=</mo>" if self.name else ""
         link = f' data-link="{escape(self.link)}"' if self.link else ""
-        return f'<div class="s3-formula"{link}><span>{escape(self.note)}</span>{math(left, self.value, unit)}</div>'
+        name = escape(self.note)
+        button = (
+            f'<button type="button" class="s3-copy" data-s3="copy" value="{escape(self.copy)}"'
+            f' aria-label="Copy: {name}">Copy</button>'
+            if self.copy
+            else ""
+        )
+        return f'<div class="s3-formula"{link}><span>{name}</span>{button}{math(left, self.value, unit)}</div>'
 
 
 @dataclass(frozen=True)

@@ -85,6 +85,23 @@ class Typed(Generic[P, S]):
     unit: str = "m"
 
 
+@dataclass(frozen=True)
+class Dial(Generic[P, S]):
+    """A slider for a number that follows from the state; `handle` is told the number, as the only one of its place.
+
+    It shows what `value` finds, and hides where there is none. It is not state: what the handle sets is.
+    """
+
+    handle: str
+    title: str
+    description: str
+    low: float
+    high: float
+    value: Callable[[P, S], float | None]
+    step: float
+    unit: str = ""
+
+
 class Library(Protocol):
     """The files that a server's sessions can show."""
 
@@ -182,6 +199,8 @@ class Sim(Generic[P, S]):
     clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
     """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
     typed: Sequence[Typed[P, S]] = ()
+    dials: Sequence[Dial[P, S]] = ()
+    """They stand before the other controls."""
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
     paste: Paste[P] | None = None

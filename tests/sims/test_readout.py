@@ -22,6 +22,7 @@ from sims.kit.readout import (
     quantity,
     render,
     row,
+    significant,
     symbol,
 )
 from tests.sims.markup import bad_numbers, mistakes, words, xml
@@ -87,6 +88,27 @@ def test_a_matrix_is_written_by_rows(shape: tuple[int, ...]) -> None:
 
 def test_a_percent_sign_does_no_harm_beside_a_matrix() -> None:
     assert "%" not in mathml(np.eye(2))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (1.0, "1.0000"), (-0.25, "−2.5000·10−1"), (1.2345678e-7, "1.2346·10−7"), (1e-15, "0"),
+        (-65432100.0, "−6.5432·107"),
+    ],
+)  # fmt: skip
+def test_entries_with_powers_of_ten_have_as_many_digits_each(value: float, text: str) -> None:
+    matrix = np.full((2, 2), 1.0)
+    matrix[0, 1] = value
+    entries = ["".join(entry.itertext()) for entry in xml(significant(matrix)).iter("mtd")]
+    assert entries == ["1.0000", text, "1.0000", "1.0000"]
+
+
+def test_what_a_button_copies_stands_in_it() -> None:
+    html = Formula("Matrix & more", "M", mathml(np.eye(2)), copy='[["<1>"]]').html()
+    (button,) = xml(html).iter("button")
+    assert (button.get("value"), button.get("aria-label")) == ('[["<1>"]]', "Copy: Matrix & more")
+    assert not list(xml(Formula("Matrix", "M", mathml(np.eye(2))).html()).iter("button"))
 
 
 def test_a_tuple_is_written_in_a_row() -> None:

@@ -77,7 +77,10 @@ def test_link_of_a_state_leads_back_to_it(sim: AnySim, name: str, params: Params
 
 @each_sim
 def test_defaults_are_left_out_of_the_link(sim: AnySim) -> None:
-    assert sim.params().query() == ""
+    opened = parse(sim, "")
+    assert opened == sim.params().changed(sim.params.opening)
+    assert opened.query() == ""
+    assert len(sim.params().query_items()) == bool(sim.params.opening), "the state of the defaults has a link too"
 
 
 @each_sim
@@ -257,7 +260,7 @@ def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) 
 @each_sim
 def test_few_controls_are_seen_at_first(sim: AnySim) -> None:
     first = [name for name, kind in sim.params.kinds.items() if not kind.hidden and not kind.group]
-    assert 1 <= len(first) + len(sim.typed) <= 6
+    assert 1 <= len(first) + len(sim.typed) + len(sim.dials) <= 6
     assert len([action for action in sim.actions if not action.group]) <= 5
 
 
@@ -506,6 +509,23 @@ def test_what_is_dragged_can_be_typed(sim: AnySim) -> None:
             assert rig.column.values[f"{typed.handle}.2"] == pytest.approx(aim[2] - 0.02, abs=1e-6)
 
 
+@each_sim
+def test_a_dial_sets_what_it_shows_within_its_ends_and_is_typed_exactly(sim: AnySim) -> None:
+    starts = [sim.params(), *(params for each, _, params in ALL if each is sim)]
+    with Rig(sim) as rig:
+        for dial in sim.dials:
+            rig.show(next(params for params in starts if dial.value(params, sim.solve(params)) is not None))
+            for aim, kept in ((dial.low - 1.0, dial.low), (0.5 * (dial.low + dial.high), None), (1e9, dial.high)):
+                rig.browser.move(dial.handle, aim)
+                rig.settle()
+                shown = rig.column.values[dial.handle]
+                assert shown == dial.value(rig.session.params, rig.session.solution)
+                assert shown == pytest.approx(aim if kept is None else kept)
+            rig.host.call(lambda name=dial.handle, low=dial.low: rig.session.enter(name, f"{low + 0.25}"))  # type: ignore[misc]
+            rig.settle()
+            assert rig.column.values[dial.handle] == pytest.approx(dial.low + 0.25)
+
+
 @each_state
 def test_what_can_be_typed_is_shown_where_it_exists(
     rigs: dict[str, Rig], sim: AnySim, name: str, params: Params
@@ -517,3 +537,7 @@ def test_what_can_be_typed_is_shown_where_it_exists(
         assert bool(rig.column.parts[f"control:{typed.handle}"]) == (place is not None)
         if place is not None:
             assert rig.column.vector(typed.handle) == pytest.approx([*place])
+    for dial in sim.dials:
+        value = dial.value(params, rig.session.solution)
+        assert bool(rig.column.parts[f"control:{dial.handle}"]) == (value is not None)
+        assert rig.column.values[dial.handle] == value
