@@ -41,7 +41,10 @@ SIM = Sim(
         Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", actions.switch_noise),
     ),
     selects="method",
-    handles={"/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right},
+    handles={
+        "/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right,
+        "depth": actions.hold_depth,
+    },
     typed=(
         Typed(
             "/point", "3D point", "Sets both image points exactly, as dragging the point in the scene does",

@@ -14,11 +14,12 @@ from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN
-from sims.triangulation.params import NAMES, Pixel, TriangulationParams
+from sims.triangulation.holding import Pixel
+from sims.triangulation.params import NAMES, TriangulationParams
 from sims.triangulation.scene_closeup import CloseUp
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
-from sims.triangulation.solution import METHODS, Rig, TriangulationSolution, rig
+from sims.triangulation.solution import METHODS, TriangulationSolution, rig
 
 LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
 FAR = 12.0
@@ -59,10 +60,11 @@ class TriangulationScene:
         self.warning = stage.label("/warning", "")
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
-        cameras = rig(p.baseline, p.focal)
+        cameras = rig(p)
         half = 0.5 * p.baseline
-        for camera, sight, x in zip(self.cameras, (s.sight_left, s.sight_right), (-half, half), strict=True):
-            camera.draw(cameras, s, sight, x)
+        left, right = self.cameras
+        left.draw(cameras.corners_left, cameras.size, s, s.sight_left, -half)
+        right.draw(cameras.corners_right, cameras.size, s, s.sight_right, half)
         self.baseline.stroke(((-half, 0.0, 1.0), (half, 0.0, 1.0)))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
@@ -132,13 +134,13 @@ class CameraInScene:
         self.highlighted.show(False)
         self.end = ORIGIN
 
-    def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
+    def draw(self, corners: Array, size: float, s: TriangulationSolution, sight: Pixel, at: float) -> None:
         self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
-        self.figure.draw(cameras.corners, cameras.size)
+        self.figure.draw(corners, size)
         x, y = sight
-        near = cameras.corners.item(0, 2)
+        near = corners.item(0, 2)
         self.pixel.pose(position=(x * near, y * near, near))
-        self.pixel.scale(cameras.size)
+        self.pixel.scale(size)
         far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
         self.end = x * far, y * far, far
         self.ray.stroke((ORIGIN, self.end))

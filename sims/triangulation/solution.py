@@ -15,8 +15,8 @@ from geometry import triangulation as tri
 from geometry.arrays import Array
 from geometry.camera import Camera, parallel_rig
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
-from sims.kit.frame import HEIGHT, WIDTH
-from sims.triangulation.params import Method, Pixel, TriangulationParams
+from sims.triangulation.holding import Pixel
+from sims.triangulation.params import Method, TriangulationParams
 
 METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "dlt": tri.triangulate_dlt,
@@ -45,14 +45,15 @@ class MethodResult:
     pixel_right: Pixel | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rig:
-    """Both cameras, their F, and the corners of a picture in its camera's axes where it stands in the scene."""
+    """Both cameras, their F, and the corners of each picture in its camera's axes where it stands in the scene."""
 
     left: Camera
     right: Camera
     F: Array
-    corners: Array
+    corners_left: Array
+    corners_right: Array
     size: float
 
 
@@ -74,6 +75,9 @@ class TriangulationSolution:
     """Quaternion that turns X, Y, Z to its axes."""
     depth_sigma: float | None
     parallax_angle: float
+    """Degrees between the lines from the result to both cameras."""
+    ray_angle: float
+    """Degrees between both rays, which needn't meet there."""
     in_front: bool
     measured_left: Pixel
     measured_right: Pixel
@@ -88,6 +92,11 @@ class TriangulationSolution:
     sight_left: Pixel
     sight_right: Pixel
     """x and y of the lines of sight at depth 1, in each camera's axes."""
+    equations: Array
+    """A of the linear method's A X = 0: two rows for the left picture, two for the right."""
+    singular_values: Array
+    least_vector: Array
+    """Singular vector of the least of them: the point of the linear method, homogeneous."""
 
     @property
     def depth(self) -> float | None:
@@ -102,7 +111,7 @@ class TriangulationSolution:
 
 def solve(p: TriangulationParams) -> TriangulationSolution:
     """All the mathematics of a state."""
-    cameras = rig(p.baseline, p.focal)
+    cameras = rig(p)
     left, right = measured(p)
     found = {name: method(cameras.left, cameras.right, left, right) for name, method in METHODS.items()}
     chosen, middle = found[p.method], found["midpoint"]
@@ -118,9 +127,10 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         ray_gap=float(middle.gap),
         closest_points=_existing(middle.closest),
         disparity=disparity,
-        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal))),
-        **_uncertainty(cameras, point, p.noise if p.noise > UNSEEN else 1.0),
+        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal, p.doffs))),
+        **_uncertainty(cameras, point, sigma_of(p.noise)),
         parallax_angle=math.degrees(float(chosen.parallax)),
+        ray_angle=math.degrees(float(middle.parallax)),
         in_front=bool(chosen.in_front),
         measured_left=left,
         measured_right=right,
@@ -128,20 +138,30 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         line_right=epipolar_line_right(cameras.F, left),
         target=target,
         true_point=target if p.noise > 0.0 and p.left_uv[1] == p.right_uv[1] else None,
-        cloud=cloud(p.baseline, p.focal, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
-        sight_left=_pair(cameras.left.normalized(left)),
-        sight_right=_pair(cameras.right.normalized(right)),
+        cloud=_cloud(cameras, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
+        sight_left=pair(cameras.left.normalized(left)),
+        sight_right=pair(cameras.right.normalized(right)),
+        **_linear(cameras, left, right),
     )
 
 
+def rig(p: TriangulationParams) -> Rig:
+    """The cameras of a state."""
+    return _rig(p.baseline, p.focal, p.cx, p.cy, p.doffs, p.width, p.height)
+
+
 @lru_cache(maxsize=256)
-def rig(baseline: float, focal: float) -> Rig:
-    """The cameras of a baseline in metres and a focal length in pixels."""
-    left, right = parallel_rig(baseline, focal)
-    size, width = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
-    upright = Camera(left.K, np.eye(4))
-    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * width * focal / WIDTH)
-    return Rig(left, right, fundamental(left, right), corners, size)
+def _rig(baseline: float, focal: float, cx: float, cy: float, doffs: float, width: int, height: int) -> Rig:
+    left, right = parallel_rig(baseline, focal, (cx, cy), doffs=doffs)
+    size, reach = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
+    depth = PICTURE_WIDTH * reach * focal / width
+    at_left, at_right = (Camera(each.K, np.eye(4)).frustum_corners(width, height, depth) for each in (left, right))
+    return Rig(left, right, fundamental(left, right), at_left, at_right, size)
+
+
+def sigma_of(noise: float) -> float:
+    """Pixels of noise for which it is said how sure the point is: without any, those of one pixel."""
+    return noise if noise > UNSEEN else 1.0
 
 
 def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
@@ -156,18 +176,17 @@ def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
 @lru_cache(maxsize=1024)
 def _unit_noise(seed: int) -> tuple[Pixel, Pixel]:
     left, right = tri.pixel_noise(1, seed)[0]
-    return _pair(left), _pair(right)
+    return pair(left), pair(right)
 
 
 NO_POINTS: Array = np.empty((0, 3))
 
 
 @lru_cache(maxsize=64)
-def cloud(baseline: float, focal: float, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
+def _cloud(cameras: Rig, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
     """Points (n, 3) that pixels with as much noise again would give, as far as they exist; none without noise."""
     if noise == 0.0:
         return NO_POINTS
-    cameras = rig(baseline, focal)
     points = tri.monte_carlo(cameras.left, cameras.right, left, right, noise, SAMPLES, seed)
     return points[np.isfinite(points).all(axis=1)]
 
@@ -176,9 +195,17 @@ def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -
     status = tri.Status(int(found.status)).name.lower()
     if status != "found":
         return MethodResult(None, status)
-    at_left, at_right = (_pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
+    at_left, at_right = (pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
     a, b = math.dist(at_left, left), math.dist(at_right, right)
     return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
+
+
+def _linear(cameras: Rig, left: Pixel, right: Pixel) -> dict[str, Any]:
+    """The equations of the linear method, and their solution with its last entry above 0."""
+    A = tri.dlt_equations(cameras.left, cameras.right, left, right)
+    _, singular, vectors = np.linalg.svd(A)
+    least = vectors[3] if vectors.item(3, 3) >= 0.0 else -vectors[3]
+    return {"equations": A, "singular_values": singular, "least_vector": least}
 
 
 def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, Any]:
@@ -203,6 +230,7 @@ def _positive(value: float) -> float | None:
     return value if value > 0.0 else None
 
 
-def _pair(array: Array) -> Pixel:
+def pair(array: Array) -> Pixel:
+    """Two coordinates as plain numbers."""
     u, v = array.tolist()
     return u, v

@@ -112,7 +112,7 @@ def test_linear_point_is_that_of_opencv(changes: dict[str, Any]) -> None:
 def test_optimal_point_projects_to_opencvs_corrected_pixels(changes: dict[str, Any]) -> None:
     p = START.changed(changes)
     left, right = mathematics.measured(p)
-    F = mathematics.rig(p.baseline, p.focal).F
+    F = mathematics.rig(p).F
     corrected = cv2.correctMatches(F, np.array([[left]]), np.array([[right]]))
     for ours, theirs in zip(projections(p, found(p, "optimal")), corrected, strict=True):
         np.testing.assert_allclose(ours, np.ravel(theirs), rtol=0, atol=1e-6)
@@ -203,15 +203,20 @@ def at_depth(p: TriangulationParams, depth: float) -> TriangulationSolution:
     return solve(p.changed(actions.hold_point(p, (0.05, depth, 1.1))))
 
 
+def dot_of(svg: str) -> tuple[float, float]:
+    """Where the plot's point is in its picture."""
+    mark = re.search(r'data-handle="depth"[^>]* data-x="([\d.]+)" data-y="([\d.]+)"', svg)
+    assert mark is not None
+    return float(mark[1]), float(mark[2])
+
+
 @pytest.mark.parametrize("changes", [{}, {"baseline": 0.3}, {"noise": 2.0}, {"left_uv": (360, 240)}])
 def test_plot_marks_the_point_on_its_curve_and_its_ghosts_are_half_and_twice_the_baseline(
     changes: dict[str, Any],
 ) -> None:
     p = START.changed(changes)
     svg = panes(p, solve(p))[2].svg
-    mark = re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)"', svg)
-    assert mark is not None
-    u, v = float(mark[1]), float(mark[2])
+    u, v = dot_of(svg)
     above: dict[str, list[float]] = {"curve": [], "ghost": []}
     for path, kind in re.findall(r'<path d="M([\d. L]+)" class="s3-(curve|ghost)"/>', svg):
         points = np.array([[float(n) for n in pair.split()] for pair in path.split("L")])
@@ -547,8 +552,13 @@ def test_what_is_outside_a_picture_is_marked_at_its_border() -> None:
     assert out > 0
 
 
-@pytest.mark.parametrize(("left", "right", "times"), [(None, None, 1), (0.0, 0.0, 1), (80.0, 3.0, 1), (0.0, 6.0, 20)])
-def test_arrows_are_magnified_until_they_can_be_seen(left: float | None, right: float | None, times: int) -> None:
+@pytest.mark.parametrize(
+    ("left", "right", "times"),
+    [(None, None, 1), (0.0, 0.0, 1), (80.0, 3.0, 1), (0.0, 6.0, 10), (0.05, 0.0, 100), (0.02, 0.01, 1)],
+)
+def test_arrows_are_magnified_until_they_can_be_seen_but_no_farther(
+    left: float | None, right: float | None, times: int
+) -> None:
     assert magnification(left, right) == times
 
 
@@ -560,3 +570,136 @@ def test_what_the_glass_holds_of_a_line() -> None:
         np.testing.assert_allclose(np.cross(offset, (0.15, 1.0, 0.05)), 0.0, atol=1e-12)
     missed, same = chord([2.0, 0.0, 0.0], (0.0, 1.0, 0.0), 0.75)
     assert missed == same
+
+
+# ---- what stays while the cameras change
+
+
+def slid(p: TriangulationParams, **values: float) -> TriangulationParams:
+    """The state after sliders moved, one after the other."""
+    for name, value in values.items():
+        p = p.moved({name: value})
+    return p
+
+
+def sigma(p: TriangulationParams) -> float:
+    found = solve(p).depth_sigma
+    assert found is not None
+    return found
+
+
+def test_a_larger_baseline_or_focal_length_makes_the_same_point_surer() -> None:
+    before = solve(START)
+    for values in ({"baseline": 2.0}, {"focal": 1500.0}, {"baseline": 0.05}, {"baseline": 1.2, "focal": 450.0}):
+        after = solve(slid(START, **values))
+        np.testing.assert_allclose(after.point, before.point, rtol=0, atol=1e-9)  # type: ignore[arg-type]
+        larger = values.get("baseline", 0.6) * values.get("focal", 600.0) / 360.0
+        assert after.depth_sigma == pytest.approx(before.depth_sigma / larger)  # type: ignore[operator]
+
+
+def test_a_link_means_what_it_always_did() -> None:
+    p = TriangulationParams.from_query(parse_qsl("baseline=1.2"))
+    assert (p.left_uv, p.right_uv, p.hold) == ((410.0, 210.0), (320.0, 210.0), "point")
+    assert solve(p).depth == pytest.approx(8.0), "its pixels are those of the default"
+    named = TriangulationParams.from_query(parse_qsl("baseline=1.2&left_uv=410,210&right_uv=320,210"))
+    assert named == p
+    assert START.changed({"baseline": 1.2}) == p, "a course page sets what it names, and nothing else"
+
+
+def test_pixels_stay_where_that_is_asked_for() -> None:
+    p = START.changed({"hold": "pixels"})
+    after = slid(p, baseline=2.0, focal=900.0)
+    assert (after.left_uv, after.right_uv) == (START.left_uv, START.right_uv)
+    assert sigma(after) > sigma(p)
+
+
+def test_what_names_pixels_sets_them_whatever_else_it_names() -> None:
+    after = START.moved({"baseline": 2.0, "left_uv": (400.0, 200.0)})
+    assert (after.left_uv, after.right_uv) == ((400.0, 200.0), START.right_uv)
+
+
+@given(states, st.floats(0.05, 2), st.floats(200, 1500))
+def test_the_point_is_held_and_so_is_the_miss(p: TriangulationParams, baseline: float, focal: float) -> None:
+    p = p.changed({"noise": 0.0, "method": "optimal", "hold": "point"})
+    between = slid(p, baseline=baseline)
+    after = slid(between, focal=focal)
+    was, now = solve(p).point, solve(after).point
+    if was is None or now is None:
+        assert was is None, "a point that is held goes on to be there"
+        assert (after.left_uv, after.right_uv) == (p.left_uv, p.right_uv)
+        return
+    pixels = [uv for each in (between, after) for uv in (each.left_uv, each.right_uv)]
+    if all(0.01 < v < end - 0.01 for uv in pixels for v, end in zip(uv, p.last, strict=True)):
+        np.testing.assert_allclose(now, was, rtol=1e-6, atol=1e-6)
+        assert after.left_uv[1] - after.right_uv[1] == pytest.approx(p.left_uv[1] - p.right_uv[1], abs=1e-9)
+
+
+def test_a_point_that_a_picture_shows_no_more_goes_aside_at_its_depth() -> None:
+    after = slid(START, baseline=2.0, focal=1200.0)
+    assert after.left_uv[0] == 639.0
+    found = solve(after).point
+    assert found is not None
+    assert found[1] == pytest.approx(4.0)
+    assert found[0] < 0.3
+
+
+def test_the_slider_of_the_baseline_leaves_the_point_in_the_scene(rig: Rig) -> None:
+    rig.show(START)
+    at = rig.model.world_pose("/point")[:3, 3]
+    rig.host.call(lambda: rig.session.slide("baseline", 1.7))
+    rig.settle()
+    np.testing.assert_allclose(rig.model.world_pose("/point")[:3, 3], at, rtol=0, atol=1e-9)
+    assert rig.session.params.query_items()["left_uv"] != "410,210"
+    rig.browser.move("hold", "pixels")
+    rig.settle()
+    rig.host.call(lambda: rig.session.slide("baseline", 0.6))
+    rig.settle()
+    assert rig.model.world_pose("/point")[1, 3] < 3.0
+
+
+# ---- the plot
+
+
+def axes(p: TriangulationParams) -> list[str]:
+    return re.findall(r'data-axes="([^"]*)"', panes(p, solve(p))[2].svg)
+
+
+def test_the_plots_axes_stay_while_a_slider_moves_and_the_curve_before_is_seen() -> None:
+    begun = START
+    for name, values in (("baseline", (0.7, 2.0, 0.1)), ("focal", (900.0, 250.0)), ("noise", (2.0, 0.3))):
+        was = begun
+        for value in values:
+            begun = slid(begun, **{name: value})
+            svg = panes(begun, solve(begun))[2].svg
+            assert "before" in words(svg)
+            assert begun.before == (was.baseline, was.focal, was.noise)
+            assert axes(begun) == axes(was.changed({"before": begun.before}))
+    back = slid(START, baseline=0.7, focal=600.0).moved({"baseline": 0.6})
+    assert back.before == (0.7, 600.0, 0.0), "another slider, another curve before it"
+    there = slid(START, baseline=0.7).moved({"baseline": 0.6})
+    assert there.before == (0.6, 600.0, 0.0)
+    assert "before" not in words(panes(there, solve(there))[2].svg)
+
+
+def test_what_is_surer_than_the_plot_has_room_for_is_marked_at_its_top() -> None:
+    p = slid(START, baseline=0.05)
+    pane = panes(p, solve(p))[2]
+    assert dot_of(pane.svg)[1] == pytest.approx(24.0)
+    assert "beyond the top" in pane.note
+
+
+@pytest.mark.parametrize("changes", [{}, {"noise": 2.0, "seed": 4}, {"right_uv": (320, 222)}, {"doffs": 30.0}])
+def test_the_point_is_dragged_along_the_depth_in_the_plot(changes: dict[str, Any]) -> None:
+    p = START.changed({**changes, "method": "optimal"})
+    for depth in (2.0, 6.5, 9.0):
+        moved = p.moved(SIM.handles["depth"](p, (depth, 0.3)))
+        assert solve(moved).depth == pytest.approx(depth, rel=1e-6)
+        assert axes(moved) == axes(p)
+        middles = [0.5 * (each.left_uv[0] + each.right_uv[0]) for each in (p, moved)]
+        assert middles[0] == pytest.approx(middles[1]), "in the direction in which it is seen"
+    for beyond, end in ((0.2, 1.01), (30.0, 9.99)):
+        moved = p.moved(SIM.handles["depth"](p, (beyond, 0.3)))
+        assert solve(moved).depth == pytest.approx(end, rel=1e-6), "it stays on its plot"
+        assert axes(moved) == axes(p)
+    nowhere = START.changed(SIM.states["diverging rays"])
+    assert SIM.handles["depth"](nowhere, (3.0, 0.1)) == {}
