@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Literal
 
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import quantity
+from sims.kit.world_drawing import draw_in_picture
 from sims.triangulation.depth_plot import plot
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, Method, TriangulationParams
 from sims.triangulation.scale import Scale
-from sims.triangulation.solution import TriangulationSolution
+from sims.triangulation.solution import WORLD, Rig, TriangulationSolution, rig
 
 Side = Literal["left", "right"]
 MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100)
@@ -43,7 +45,7 @@ def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale
     left = side == "left"
     other: Side = "right" if left else "left"
     held, measured = (p.left_uv, s.measured_left) if left else (p.right_uv, s.measured_right)
-    picture = Picture(side, f"{side.capitalize()} picture", scale.width, scale.height)
+    picture = _world(side, rig(p), scale).copy()
     line = scale.line(s.line_left if left else s.line_right)
     picture.homogeneous_line(line, other, dash="7 5", link=other)
     if p.noise > 0.0:
@@ -64,6 +66,14 @@ def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale
         link=side,
     )  # fmt: skip
     return picture.pane(_error_in_words(error, times))
+
+
+@lru_cache(maxsize=128)
+def _world(side: Side, cameras: Rig, scale: Scale) -> Picture:
+    """What a camera sees of the little world."""
+    picture = Picture(side, f"{side.capitalize()} picture", scale.width, scale.height)
+    draw_in_picture(picture, scale.camera(cameras.left if side == "left" else cameras.right), WORLD)
+    return picture
 
 
 def _measured(picture: Picture, measured: Pixel, side: Side) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from geometry.arrays import Array
+from geometry.camera import Camera
 from sims.kit.frame import WIDTH
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import TriangulationParams
@@ -35,6 +36,14 @@ class Scale:
         """The pixel that is drawn at a place."""
         k, shift = self.factor, 0.5 * (self.factor - 1.0)
         return (place[0] - shift) / k, (place[1] - shift) / k
+
+    def camera(self, camera: Camera) -> Camera:
+        """One whose pixels are where this draws those of another."""
+        (f, _, cx), (_, _, cy), _ = camera.K.tolist()
+        at = self.at((cx, cy))
+        return Camera.from_intrinsics(
+            self.factor * f, self.factor * f, *at, T_camera_world=camera.T_camera_world
+        )
 
     def line(self, line: Array) -> tuple[float, float, float]:
         """Where the line a u + b v + c = 0 of the pixels is drawn."""

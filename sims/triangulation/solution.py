@@ -28,6 +28,8 @@ PICTURE_WIDTH = 0.4
 """Metres that a picture is wide where it stands in the scene."""
 BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
 """Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
+WORLD = (-0.42, 3.653, 0.0)
+"""Metres by which the little world is moved: the point of the defaults is straight above the second post."""
 UNSEEN = 1e-9
 """Pixels of noise up to which nothing of it is seen."""
 
