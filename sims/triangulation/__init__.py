@@ -6,11 +6,13 @@ the rays meet, or nearly meet, and noise in the pixels says how far that may be 
 
 from __future__ import annotations
 
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Objective, Sim, Typed, View
-from sims.triangulation import actions
+from sims.triangulation import actions, calibration
+from sims.triangulation.captions import caption
 from sims.triangulation.panes import panes
-from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, SURENESS, TriangulationParams
-from sims.triangulation.readouts import METHODS, caption, describe, readouts
+from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, RIG, SURENESS, TriangulationParams
+from sims.triangulation.readouts import EQUATIONS, METHODS, describe, readouts
 from sims.triangulation.scene import TriangulationScene, seen
 from sims.triangulation.solution import TriangulationSolution, solve
 
@@ -31,7 +33,7 @@ SIM = Sim(
     scene=TriangulationScene,
     caption=caption,
     readouts=readouts,
-    folds=(IMAGES, METHODS, SURENESS,),
+    folds=(IMAGES, METHODS, EQUATIONS, SURENESS, RIG),
     describe=describe,
     view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
     seen=seen,
@@ -39,8 +41,22 @@ SIM = Sim(
     actions=(
         Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", actions.new_sample),
         Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", actions.switch_noise),
+        Action(
+            "middlebury", "Middlebury", "Two still cameras indoors, with differing principal points (Adirondack)",
+            calibration.middlebury, group=RIG,
+        ),
+        Action("kitti", "KITTI", "Two cameras on the roof of a car", calibration.kitti, group=RIG),
     ),
     selects="method",
+    paste=Paste(
+        group=RIG,
+        title="A rig of your own",
+        about="What a stereo data set’s calibration file says: Middlebury’s calib.txt, or KITTI’s calib_cam_to_cam.txt",
+        example=calibration.EXAMPLE,
+        read=calibration.read,
+        changes=calibration.changes,
+        endings=(".txt",),
+    ),
     handles={
         "/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right,
         "depth": actions.hold_depth,

@@ -95,6 +95,11 @@ class TriangulationParams(Params):
         """The pixel in the bottom right corner of a picture."""
         return self.width - 1.0, self.height - 1.0
 
+    @property
+    def middle(self) -> Pixel:
+        """The pixel in the middle of a picture."""
+        return 0.5 * self.last[0], 0.5 * self.last[1]
+
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "focal":
             return 200.0, NARROWEST * max(self.width, WIDTH)

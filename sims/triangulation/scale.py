@@ -41,9 +41,7 @@ class Scale:
         """One whose pixels are where this draws those of another."""
         (f, _, cx), (_, _, cy), _ = camera.K.tolist()
         at = self.at((cx, cy))
-        return Camera.from_intrinsics(
-            self.factor * f, self.factor * f, *at, T_camera_world=camera.T_camera_world
-        )
+        return Camera.from_intrinsics(self.factor * f, self.factor * f, *at, T_camera_world=camera.T_camera_world)
 
     def line(self, line: Array) -> tuple[float, float, float]:
         """Where the line a u + b v + c = 0 of the pixels is drawn."""

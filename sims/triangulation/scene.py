@@ -108,7 +108,8 @@ class TriangulationScene:
             self.gap_label.text(gap_in_words(s))
         digits = 2 if s.depth_sigma is None or s.depth_sigma >= 0.005 else 4
         unsure = f" ± {figure(s.depth_sigma, digits)}" if s.depth_sigma is not None and not s.vague else ""
-        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m")
+        cut = ", ellipsoid cut" if p.show_ellipsoid and s.drawn_part < 1.0 and not s.vague else ""
+        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m{cut}")
 
     def _warn(self, s: TriangulationSolution) -> None:
         self.warning.show(s.point is None or s.vague)

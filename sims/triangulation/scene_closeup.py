@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from geometry.arrays import Array
 from sims.kit.scene.stage import Stage
 from sims.triangulation.params import NAMES, TriangulationParams
-from sims.triangulation.scene_region import SEEN_GAP, SIGMAS, Region, gap_in_words, in_steps
+from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
-from sims.triangulation.solution import METHODS, TriangulationSolution
+from sims.triangulation.solution import METHODS, SIGMAS, TriangulationSolution
 
 RADIUS, HEIGHT = 0.19, 0.36
 """Radius of the glass, and how far above the point it hangs, as parts of the point's depth."""

@@ -30,6 +30,10 @@ BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
 """Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
 WORLD = (-0.42, 3.653, 0.0)
 """Metres by which the little world is moved: the point of the defaults is straight above the second post."""
+SIGMAS = 3.0
+"""Standard deviations up to which the ellipsoid is drawn."""
+DRAWN = 0.5
+"""Depths of the point, to both sides of it, up to which it is drawn: a longer one would hide the scene."""
 UNSEEN = 1e-9
 """Pixels of noise up to which nothing of it is seen."""
 
@@ -104,6 +108,13 @@ class TriangulationSolution:
     def depth(self) -> float | None:
         """How far in front of the cameras the point is."""
         return None if self.point is None else float(self.point[1])
+
+    @property
+    def drawn_part(self) -> float:
+        """How much of the ellipsoid's length is drawn."""
+        if self.depth is None or self.ellipsoid_axes is None:
+            return 1.0
+        return min(1.0, DRAWN * self.depth / (SIGMAS * self.ellipsoid_axes.item(0)))
 
     @property
     def vague(self) -> bool:

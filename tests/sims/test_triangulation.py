@@ -15,6 +15,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from geometry.camera import parallel_rig
 from geometry.triangulation import covariance, monte_carlo
@@ -22,7 +23,7 @@ from sims.kit import readout
 from sims.kit.frame import inside
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
-from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, solve
+from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, calibration, solve
 from sims.triangulation import solution as mathematics
 from sims.triangulation.panes import magnification, panes
 from sims.triangulation.scene_closeup import chord
@@ -703,3 +704,193 @@ def test_the_point_is_dragged_along_the_depth_in_the_plot(changes: dict[str, Any
         assert axes(moved) == axes(p)
     nowhere = START.changed(SIM.states["diverging rays"])
     assert SIM.handles["depth"](nowhere, (3.0, 0.1)) == {}
+
+
+# ---- what is said
+
+
+def formulas(p: TriangulationParams) -> dict[str, str]:
+    """The words of each read-out that is a formula, by its note."""
+    found = [each for each in SIM.readouts(p, solve(p)) if isinstance(each, readout.Formula)]
+    return {each.note: words(each.html()) for each in found}
+
+
+def test_both_angles_are_named_and_differ_where_the_rays_miss() -> None:
+    p = START.changed({"left_uv": (639, 479), "right_uv": (320, 0), "method": "dlt"})
+    solution = solve(p)
+    a, b = (np.array([(u - 320) / 600, 1.0, -(v - 240) / 600]) for u, v in (p.left_uv, p.right_uv))
+    rays = math.degrees(math.acos(a @ b / math.sqrt(a @ a * (b @ b))))
+    assert solution.point is not None
+    a, b = (solution.point - np.array([x, 0.0, 1.0]) for x in (-0.3, 0.3))
+    there = math.degrees(math.acos(a @ b / math.sqrt(a @ a * (b @ b))))
+    assert abs(rays - there) > 1.0
+    assert (solution.ray_angle, solution.parallax_angle) == pytest.approx((rays, there))
+    said = formulas(p)
+    assert figure(rays, 2) in said["Angle between the two rays"]
+    assert figure(there, 2) in said["Angle at the point, between the lines to both cameras (parallax)"]
+
+
+@each_pair
+def test_the_equations_of_the_linear_method_are_shown_with_what_solves_them(changes: dict[str, Any]) -> None:
+    p = START.changed(changes)
+    solution, rows = solve(p), list[Array]()
+    K_inverse = np.linalg.inv(np.array([[p.focal, 0, 320], [0, p.focal, 240], [0, 0, 1]]))
+    for uv, P in zip(mathematics.measured(p), matrices(p), strict=True):
+        inner = K_inverse @ P
+        x, y, _ = K_inverse @ [*uv, 1.0]
+        rows += [x * inner[2] - inner[0], y * inner[2] - inner[1]]
+    np.testing.assert_allclose(solution.equations, rows, rtol=0, atol=1e-9)
+    v = solution.least_vector
+    assert np.linalg.norm(v) == pytest.approx(1.0)
+    assert np.linalg.norm(solution.equations @ v) == pytest.approx(solution.singular_values[3], abs=1e-12)
+    np.testing.assert_allclose(v[:3] / v[3], found(p, "dlt"), rtol=1e-9)
+    html = readout.render(SIM.readouts(p, solution))
+    sides = re.findall(r'<mtd class="s3-(left|right)"><mn>(.*?)</mn>', html)
+    assert [side for side, _ in sides] == ["left"] * 8 + ["right"] * 8
+    assert [value for _, value in sides] == [figure(value, 3) for value in np.ravel(rows)]
+
+
+def test_the_sentence_says_what_a_change_of_the_cameras_did() -> None:
+    assert "onto a corner" in SIM.caption(START, solve(START))
+    for changes, said in (
+        ({"baseline": 1.2}, "A longer baseline, a surer depth: from ± 0.063 to ± 0.031"),
+        ({"focal": 300.0}, "A shorter focal length, a less sure depth: from ± 0.063 to ± 0.126"),
+    ):
+        p = slid(START, **changes)
+        assert SIM.caption(p, solve(p)) == f"{said}\u2009m at the same point."
+    kept = slid(START.changed({"hold": "pixels"}), baseline=1.2)
+    assert SIM.caption(kept, solve(kept)).startswith("With the pixels kept, a longer baseline means a farther point")
+    noisy = slid(START, noise=1.0)
+    assert SIM.caption(noisy, solve(noisy)).startswith("With noise")
+
+
+# ---- the ellipsoid
+
+
+def test_a_long_ellipsoid_is_cut_and_its_length_said(rig: Rig) -> None:
+    p = START.changed({"right_uv": (408.512, 210)})
+    solution = solve(p)
+    assert solution.depth == pytest.approx(242.0, abs=0.1)
+    assert solution.ellipsoid_axes is not None
+    rig.show(p)
+    assert not rig.model.visible("/uncertainty/ellipsoid")
+    assert rig.model.visible("/uncertainty/cut")
+    node = rig.model.node("/uncertainty/cut")
+    pose = rig.model.world_pose("/uncertainty/cut")
+    unit = np.asarray(node.props["vertices"], dtype=float).reshape(-1, 3)
+    corners = (unit * node.props["scale"]) @ pose[:3, :3].T + pose[:3, 3]
+    offsets = corners - solution.point
+    assert solution.covariance is not None
+    inverse = np.linalg.inv(9.0 * solution.covariance)
+    assert np.einsum("ni,ij,nj->n", offsets, inverse, offsets).max() == pytest.approx(1.0, abs=1e-5), "no farther"
+    along = offsets @ np.linalg.eigh(solution.covariance)[1][:, 2]
+    assert np.abs(along).max() == pytest.approx(0.5 * solution.depth, rel=1e-5)  # type: ignore[operator]
+    assert corners[:, 1].min() > 0.4 * solution.depth, "the scene before the cameras is free"  # type: ignore[operator]
+    length = f"{figure(6.0 * float(solution.ellipsoid_axes[0]), 0)}\u2009m long"
+    assert length in words(rig.column.html("read"))
+    assert "ellipsoid cut" in rig.model.labels()["/result/label"]
+    rig.show(START)
+    assert rig.model.visible("/uncertainty/ellipsoid")
+    assert not rig.model.visible("/uncertainty/cut")
+
+
+# ---- real rigs
+
+
+def test_a_calibration_of_middlebury_is_understood_in_metres_and_pixels() -> None:
+    assert SIM.paste is not None
+    assert SIM.paste.found(SIM.paste.example) == pytest.approx(calibration.MIDDLEBURY)
+
+
+KITTI_TEXT = """\
+calib_time: 09-Jan-2012 13:57:47
+S_rect_00: 1.242000e+03 3.750000e+02
+P_rect_00: 7.215377e+02 0 6.095593e+02 0 0 7.215377e+02 1.728540e+02 0 0 0 1 0
+P_rect_01: 7.215377e+02 0 6.095593e+02 -3.875744e+02 0 7.215377e+02 1.728540e+02 0 0 0 1 0
+"""
+
+
+@pytest.mark.parametrize("text", [KITTI_TEXT, KITTI_TEXT.replace("P_rect_0", "P").replace("S_rect", "other")])
+def test_a_calibration_of_kitti_is_understood(text: str) -> None:
+    assert calibration.read(text) == pytest.approx(calibration.KITTI, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "No calibration"),
+        ("cam0=[1 2\ncam1=[1 2]\nbaseline=1", "“cam0” should have 9 numbers"),
+        (calibration.EXAMPLE.replace("4161.221 0 1654", "4000 0 1654"), "focal lengths differ"),
+        (calibration.EXAMPLE.replace("cam0=[4161.221", "cam0=[0"), "above 0"),
+        (calibration.EXAMPLE.replace("984.686; 0 0 1]\nd", "900; 0 0 1]\nd"), "different heights"),
+        (calibration.EXAMPLE.replace("width=2880", ""), "“width” should have 1 number."),
+        (calibration.EXAMPLE.replace("176.252", "nan"), "“baseline” should have 1 number."),
+        (KITTI_TEXT.replace("7.215377e+02", "0"), "above 0"),
+    ],
+)
+def test_what_is_no_calibration_is_refused_in_words(text: str, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        calibration.read(text)
+
+
+@pytest.mark.parametrize("run", [calibration.middlebury, calibration.kitti])
+def test_a_real_rig_looks_at_the_same_point_and_is_as_sure_as_its_numbers_say(run: Any) -> None:
+    p = START.changed(run(START))
+    solution = solve(p)
+    np.testing.assert_allclose(solution.point, (0.3, 4.0, 1.2), rtol=0, atol=1e-9)  # type: ignore[arg-type]
+    assert solution.depth_from_disparity == pytest.approx(p.focal * p.baseline / (solution.disparity + p.doffs))
+    assert solution.depth_sigma == pytest.approx(math.sqrt(2.0) * 16.0 / (p.focal * p.baseline))
+    assert p.before == (0.6, 600.0, 0.0), "the curve of the rig before is kept"
+    assert ("doffs" in words(readout.render(SIM.readouts(p, solution)))) == bool(p.doffs)
+    again = TriangulationParams.from_query(parse_qsl(p.query()))
+    assert again == p
+
+
+def test_no_disparity_is_near_where_the_principal_points_differ() -> None:
+    p = START.changed({**calibration.MIDDLEBURY, "left_uv": (1400, 900), "right_uv": (1400, 900)})
+    assert solve(p).depth == pytest.approx(4161.221 * 0.176252 / 209.059)
+    far = p.changed({"right_uv": (1609.059, 900)})
+    assert solve(far).status == "parallel"
+    assert "with doffs added is zero" in words(readout.render(SIM.readouts(far, solve(far))))
+
+
+def test_a_rig_that_is_out_of_bounds_is_refused() -> None:
+    with pytest.raises(ValidationError, match="baseline"):
+        START.changed(calibration.changes(START, {**calibration.MIDDLEBURY, "baseline": 176.252}))
+
+
+@pytest.mark.parametrize("run", [calibration.middlebury, calibration.kitti])
+def test_pictures_of_any_size_are_drawn_as_wide_and_held_in_their_own_pixels(run: Any) -> None:
+    p = START.changed(run(START))
+    (left,) = xml(panes(p, solve(p))[0].svg)
+    assert left.get("viewBox") == f"-0.5 -0.5 640 {math.ceil(640 * p.height / p.width)}"
+    (handle,) = (e for e in left.iter() if e.get("data-handle"))
+    place = float(handle.get("data-x", "")), float(handle.get("data-y", ""))
+    scale = 640 / p.width
+    np.testing.assert_allclose(np.add(place, 0.5), scale * (np.array(p.left_uv) + 0.5), rtol=0, atol=1e-9)
+    assert f"{p.left_uv[0]:.1f}, {p.left_uv[1]:.1f} pixels" in handle.get("aria-label", "")
+    there = SIM.handles["left_uv"](p, place)
+    assert there["left_uv"] == pytest.approx(p.left_uv)
+    corner = p.moved(SIM.handles["left_uv"](p, (639.0, 479.0)))
+    assert corner.left_uv[0] > p.width - 3
+    assert corner.left_uv[1] <= p.height - 1
+    (line,) = (e for e in left.iter() if e.get("data-link") == "right")
+    assert float(line.get("y1", "")) + 0.5 == pytest.approx(scale * (p.right_uv[1] + 0.5), abs=0.01)
+
+
+def test_a_pixel_is_in_a_picture_of_any_size() -> None:
+    with pytest.raises(ValidationError, match="from 0 to 639"):
+        START.changed({"left_uv": (640.0, 10.0)})
+    assert START.changed({"width": 2880, "left_uv": (2000.0, 10.0)}).left_uv == (2000.0, 10.0)
+    assert START.bounds("focal") == (200.0, 1500.0)
+
+
+def test_the_little_world_is_where_both_pictures_show_it(rig: Rig) -> None:
+    """The top of the second post, right below the point: its faces meet there in both pictures, and in the scene."""
+    rig.show(START)
+    top = np.array([0.3, 4.0, 1.0])
+    edges = rig.model.points("/things/edges").reshape(-1, 3)
+    assert np.linalg.norm(edges - top, axis=1).min() < 0.005
+    for pane, pixel in zip(panes(START, solve(START)), projections(START, top), strict=False):
+        corners = re.findall(r"[ML]([-\d.]+) ([-\d.]+)", pane.svg.partition('class="s3-faces"')[2])
+        assert np.linalg.norm(np.array(corners, dtype=float) - pixel, axis=1).min() < 1.0

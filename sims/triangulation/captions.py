@@ -1,0 +1,44 @@
+"""The sentence at the top: what to do, or what a change of the cameras has done."""
+
+from __future__ import annotations
+
+from geometry.triangulation import depth_sigma
+from sims.kit.readout import THIN, figure
+from sims.triangulation.params import OF_CURVE, TriangulationParams
+from sims.triangulation.solution import TriangulationSolution, sigma_of
+
+LESS_AND_MORE = (("shorter baseline", "longer baseline"), ("shorter focal length", "longer focal length"))
+
+
+def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """What to do, or what to see."""
+    if s.point is None:
+        return "The rays don’t meet in front of the cameras: pull the right point to the left in its picture."
+    if changed := _change(p, s):
+        return changed
+    if p.noise > 0.0:
+        return "With noise on both pixels the rays miss each other: the ellipsoid says where the point may be."
+    return "Drag a point in one picture onto a corner, then match it in the other."
+
+
+def _change(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """What the change of one of baseline and focal length since `before` means, if that is what changed."""
+    if p.before is None or s.depth is None or s.depth_sigma is None or s.vague:
+        return ""
+    now = tuple([getattr(p, name) for name in OF_CURVE])
+    changed = [k for k, (was, is_now) in enumerate(zip(p.before, now, strict=True)) if was != is_now]
+    if len(changed) != 1 or changed[0] == OF_CURVE.index("noise"):
+        return ""
+    (k,) = changed
+    more = now[k] > p.before[k]
+    what = LESS_AND_MORE[k][more]
+    if p.hold == "pixels":
+        where = "farther" if more else "nearer"
+        return f"With the pixels kept, a {what} means a {where} point, and so a {_sure(not more)} one."
+    b, f, noise = p.before
+    was = figure(float(depth_sigma(s.depth, b, f, sigma_of(noise))))
+    return f"A {what}, a {_sure(more)} depth: from ± {was} to ± {figure(s.depth_sigma)}{THIN}m at the same point."
+
+
+def _sure(more: bool) -> str:
+    return "surer" if more else "less sure"
