@@ -786,7 +786,7 @@ def test_a_long_ellipsoid_is_cut_and_its_length_said(rig: Rig) -> None:
     along = offsets @ np.linalg.eigh(solution.covariance)[1][:, 2]
     assert np.abs(along).max() == pytest.approx(0.5 * solution.depth, rel=1e-5)  # type: ignore[operator]
     assert corners[:, 1].min() > 0.4 * solution.depth, "the scene before the cameras is free"  # type: ignore[operator]
-    length = f"{figure(6.0 * float(solution.ellipsoid_axes[0]), 0)}\u2009m long"
+    length = f"{figure(6.0 * float(solution.ellipsoid_axes[0]), 0)} m long"
     assert length in words(rig.column.html("read"))
     assert "ellipsoid cut" in rig.model.labels()["/result/label"]
     rig.show(START)
