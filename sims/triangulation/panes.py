@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Literal
 
@@ -65,7 +66,7 @@ def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale
         f"{side}_uv", scale.at(held), f"{side.capitalize()} point", side[0].upper(), where=f"{u:.1f}, {v:.1f} pixels",
         link=side,
     )  # fmt: skip
-    return picture.pane(_error_in_words(error, times))
+    return replace(picture.pane(_error_in_words(error, times)), title=side.capitalize())
 
 
 @lru_cache(maxsize=128)
@@ -104,5 +105,5 @@ def _error(picture: Picture, measured: Pixel, found: Pixel, times: int) -> None:
 def _error_in_words(error: float | None, times: int) -> str:
     if error is None:
         return "no point"
-    drawn = f", arrow ×{times}" if times > 1 else ""
+    drawn = f", drawn ×{times}" if times > 1 else ""
     return f"error {quantity(error, 'px', 2)}{drawn}"

@@ -82,7 +82,7 @@ def _equations(s: TriangulationSolution) -> Iterator[Formula]:
     words = "Two equations for each picture, L and R: A X = 0 for a point X = (x, y, z, 1) on both rays"
     yield Formula(words, symbol("A"), mathml(s.equations, rows=BY_PICTURE))
     words = "Singular values of A: the last is 0 where the rays meet"
-    yield Formula(words, symbol("σ"), row(s.singular_values.tolist(), 4))
+    yield Formula(words, symbol("s"), row(s.singular_values.tolist(), 4))
     *place, last = s.least_vector.tolist()
     words = "Singular vector of the last: the X of length 1 for which A X is least"
     yield Formula(words, symbol("v"), row([*place, last]))

@@ -419,7 +419,7 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         times = magnification(6.0, 6.0)
         length = float(arrow.get("y2") or 0) - float(arrow.get("y1") or 0)
         assert abs(length) == pytest.approx(6.0 * times, abs=0.02)
-        assert pane.note == f"error 6.00\u2009px, arrow ×{times}"
+        assert pane.note == f"error 6.00\u2009px, drawn ×{times}"
 
 
 MISS = START.changed({"right_uv": (320, 230), "noise": 2.0, "baseline": 0.2, "method": "optimal"})
