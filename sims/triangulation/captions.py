@@ -17,27 +17,28 @@ def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
     if changed := _change(p, s):
         return changed
     if p.noise > 0.0:
-        return "With noise on both pixels the rays miss each other: the ellipsoid says where the point may be."
+        return "Noise makes the rays miss each other: the point may be anywhere in the ellipsoid."
     return "Drag a point in one picture onto a corner, then match it in the other."
 
 
 def _change(p: TriangulationParams, s: TriangulationSolution) -> str:
-    """What the change of one of baseline and focal length since `before` means, if that is what changed."""
+    """What the change of the cameras since `before` means, if that and no noise is what changed."""
     if p.before is None or s.depth is None or s.depth_sigma is None or s.vague:
         return ""
     now = tuple([getattr(p, name) for name in OF_CURVE])
     changed = [k for k, (was, is_now) in enumerate(zip(p.before, now, strict=True)) if was != is_now]
-    if len(changed) != 1 or changed[0] == OF_CURVE.index("noise"):
+    if not changed or OF_CURVE.index("noise") in changed:
         return ""
-    (k,) = changed
-    more = now[k] > p.before[k]
-    what = LESS_AND_MORE[k][more]
-    if p.hold == "pixels":
-        where = "farther" if more else "nearer"
-        return f"With the pixels kept, a {what} means a {where} point, and so a {_sure(not more)} one."
+    more, what = now[0] * now[1] > p.before[0] * p.before[1], "Another rig"
+    if len(changed) == 1:
+        what = LESS_AND_MORE[changed[0]][more]
+        if p.hold == "pixels":
+            where = "farther" if more else "nearer"
+            return f"With the pixels kept, a {what} means a {where} point, and so a {_sure(not more)} one."
+        what = f"A {what}"
     b, f, noise = p.before
     was = figure(float(depth_sigma(s.depth, b, f, sigma_of(noise))))
-    return f"A {what}, a {_sure(more)} depth: from ± {was} to ± {figure(s.depth_sigma)}{THIN}m at the same point."
+    return f"{what}, a {_sure(more)} depth: from ± {was} to ± {figure(s.depth_sigma)}{THIN}m at the same point."
 
 
 def _sure(more: bool) -> str:

@@ -57,7 +57,12 @@ def _curves(now: Curve, before: Curve, x_max: float) -> Plot:
     y_max = room(_sigma(before, x_max), 1.0)
     drawn = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=x_max, y_max=y_max)
     b, f, sigma = now
-    others = [("before", before)] if before != now else [("½ b", (b / 2, f, sigma)), ("2 b", (2 * b, f, sigma))]
+    near = before[0] * before[1] / before[2] / (b * f / sigma)  # then its words would stand in those of the other
+    others = (
+        [("" if 0.8 < near < 1.25 else "before", before)]
+        if before != now
+        else [("½ b", (b / 2, f, sigma)), ("2 b", (2 * b, f, sigma))]
+    )
     for words, curve in (*others, ("now" if before != now else "b", now)):
         end = min(x_max, math.sqrt(y_max / _sigma(curve, 1.0)))
         depths = np.linspace(0.0, end, 25)[1:]

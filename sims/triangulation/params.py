@@ -62,9 +62,7 @@ class TriangulationParams(Params):
     """Which reconstruction is the result"""
     show_ellipsoid: Annotated[bool, Switch(title="Show ellipsoid", group=SURENESS)] = True
     """The uncertainty of the result, three standard deviations wide"""
-    doffs: Annotated[
-        float, NumberBox(-1000, 1000, step=1, unit="px", title="Offset doffs", group=RIG)
-    ] = 0
+    doffs: Annotated[float, NumberBox(-1000, 1000, step=1, unit="px", title="Offset doffs", group=RIG)] = 0
     """How much farther right the principal point is in the right picture than in the left one, as in Middlebury's data:
     Z = f b / (d + doffs)"""
     cx: Annotated[

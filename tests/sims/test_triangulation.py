@@ -419,7 +419,7 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         times = magnification(6.0, 6.0)
         length = float(arrow.get("y2") or 0) - float(arrow.get("y1") or 0)
         assert abs(length) == pytest.approx(6.0 * times, abs=0.02)
-        assert pane.note == f"error 6.00\u2009px, drawn ×{times}"
+        assert pane.note == f"error 6.00\u2009px (×{times})"
 
 
 MISS = START.changed({"right_uv": (320, 230), "noise": 2.0, "baseline": 0.2, "method": "optimal"})
@@ -672,14 +672,15 @@ def test_the_plots_axes_stay_while_a_slider_moves_and_the_curve_before_is_seen()
         for value in values:
             begun = slid(begun, **{name: value})
             svg = panes(begun, solve(begun))[2].svg
-            assert "before" in words(svg)
+            assert svg.count('class="s3-ghost"') == 1
             assert begun.before == (was.baseline, was.focal, was.noise)
             assert axes(begun) == axes(was.changed({"before": begun.before}))
+        assert "before" in words(svg)
     back = slid(START, baseline=0.7, focal=600.0).moved({"baseline": 0.6})
     assert back.before == (0.7, 600.0, 0.0), "another slider, another curve before it"
     there = slid(START, baseline=0.7).moved({"baseline": 0.6})
     assert there.before == (0.6, 600.0, 0.0)
-    assert "before" not in words(panes(there, solve(there))[2].svg)
+    assert panes(there, solve(there))[2].svg.count('class="s3-ghost"') == 2, "half and twice the baseline"
 
 
 def test_what_is_surer_than_the_plot_has_room_for_is_marked_at_its_top() -> None:
@@ -758,10 +759,15 @@ def test_the_sentence_says_what_a_change_of_the_cameras_did() -> None:
     ):
         p = slid(START, **changes)
         assert SIM.caption(p, solve(p)) == f"{said}\u2009m at the same point."
+    other = START.changed(calibration.middlebury(START))
+    assert (
+        SIM.caption(other, solve(other))
+        == "Another rig, a surer depth: from ± 0.063 to ± 0.031\u2009m at the same point."
+    )
     kept = slid(START.changed({"hold": "pixels"}), baseline=1.2)
     assert SIM.caption(kept, solve(kept)).startswith("With the pixels kept, a longer baseline means a farther point")
     noisy = slid(START, noise=1.0)
-    assert SIM.caption(noisy, solve(noisy)).startswith("With noise")
+    assert SIM.caption(noisy, solve(noisy)).startswith("Noise makes")
 
 
 # ---- the ellipsoid
