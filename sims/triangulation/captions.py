@@ -7,6 +7,7 @@ from sims.kit.readout import THIN, figure
 from sims.triangulation.params import OF_CURVE, TriangulationParams
 from sims.triangulation.solution import TriangulationSolution, sigma_of
 
+PLUS_MINUS = "±\u00a0"
 LESS_AND_MORE = (("shorter baseline", "longer baseline"), ("shorter focal length", "longer focal length"))
 
 
@@ -37,8 +38,9 @@ def _change(p: TriangulationParams, s: TriangulationSolution) -> str:
             return f"With the pixels kept, a {what} means a {where} point, and so a {_sure(not more)} one."
         what = f"A {what}"
     b, f, noise = p.before
-    was = figure(float(depth_sigma(s.depth, b, f, sigma_of(noise))))
-    return f"{what}, a {_sure(more)} depth: from ± {was} to ± {figure(s.depth_sigma)}{THIN}m at the same point."
+    was = float(depth_sigma(s.depth, b, f, sigma_of(noise)))
+    change = f"from {PLUS_MINUS}{figure(was)} to {PLUS_MINUS}{figure(s.depth_sigma)}{THIN}m"
+    return f"{what}, a {_sure(more)} depth: {change} at the same point."
 
 
 def _sure(more: bool) -> str:

@@ -105,5 +105,5 @@ def _error(picture: Picture, measured: Pixel, found: Pixel, times: int) -> None:
 def _error_in_words(error: float | None, times: int) -> str:
     if error is None:
         return "no point"
-    drawn = f" (×{times})" if times > 1 else ""
+    drawn = f" ×{times}" if times > 1 else ""
     return f"error {quantity(error, 'px', 2)}{drawn}"

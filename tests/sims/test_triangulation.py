@@ -419,7 +419,7 @@ def test_pictures_hold_the_handles_the_reprojection_and_the_other_points_line() 
         times = magnification(6.0, 6.0)
         length = float(arrow.get("y2") or 0) - float(arrow.get("y1") or 0)
         assert abs(length) == pytest.approx(6.0 * times, abs=0.02)
-        assert pane.note == f"error 6.00\u2009px (×{times})"
+        assert pane.note == f"error 6.00\u2009px ×{times}"
 
 
 MISS = START.changed({"right_uv": (320, 230), "noise": 2.0, "baseline": 0.2, "method": "optimal"})
@@ -754,15 +754,15 @@ def test_the_equations_of_the_linear_method_are_shown_with_what_solves_them(chan
 def test_the_sentence_says_what_a_change_of_the_cameras_did() -> None:
     assert "onto a corner" in SIM.caption(START, solve(START))
     for changes, said in (
-        ({"baseline": 1.2}, "A longer baseline, a surer depth: from ± 0.063 to ± 0.031"),
-        ({"focal": 300.0}, "A shorter focal length, a less sure depth: from ± 0.063 to ± 0.126"),
+        ({"baseline": 1.2}, "A longer baseline, a surer depth: from ±\u00a00.063 to ±\u00a00.031"),
+        ({"focal": 300.0}, "A shorter focal length, a less sure depth: from ±\u00a00.063 to ±\u00a00.126"),
     ):
         p = slid(START, **changes)
         assert SIM.caption(p, solve(p)) == f"{said}\u2009m at the same point."
     other = START.changed(calibration.middlebury(START))
     assert (
         SIM.caption(other, solve(other))
-        == "Another rig, a surer depth: from ± 0.063 to ± 0.031\u2009m at the same point."
+        == "Another rig, a surer depth: from ±\u00a00.063 to ±\u00a00.031\u2009m at the same point."
     )
     kept = slid(START.changed({"hold": "pixels"}), baseline=1.2)
     assert SIM.caption(kept, solve(kept)).startswith("With the pixels kept, a longer baseline means a farther point")
