@@ -78,7 +78,7 @@ def _middlebury(entries: Mapping[str, str]) -> dict[str, float]:
 
 
 def _kitti(left: list[float], right: list[float], size: str) -> dict[str, float]:
-    """Of two projection matrices (3, 4) by rows: the fourth column has -f times the place of the camera."""
+    """The rig of two projection matrices (3, 4) by rows, whose fourth column has -f times the place of the camera."""
     rig = _rig([*left[:3], *left[4:7]], [*right[:3], *right[4:7]])
     width, height = _numbers("S_rect", size, 2) if size else (KITTI["width"], KITTI["height"])
     return {**rig, "baseline": (left[3] - right[3]) / rig["focal"], "width": round(width), "height": round(height)}

@@ -11,11 +11,12 @@ from typing import Literal
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import quantity
 from sims.kit.world_drawing import draw_in_picture
+from sims.triangulation.corners import WORLD
 from sims.triangulation.depth_plot import plot
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, Method, TriangulationParams
 from sims.triangulation.scale import Scale
-from sims.triangulation.solution import WORLD, Rig, TriangulationSolution, rig
+from sims.triangulation.solution import Rig, TriangulationSolution, rig
 
 Side = Literal["left", "right"]
 MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100)

@@ -30,7 +30,7 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
         law = f"{symbol('Z')}<mo>=</mo>{fb_over(p.doffs)}"
         yield Formula(words, law, mathml(s.depth_from_disparity), "m", link="baseline focal")
     if s.point is not None and s.point[1] < VERY_FAR:
-        yield Formula(f"Point by the {NAMES[p.method]} method", symbol("X"), row(s.point.tolist()), "m")
+        yield Formula(_point_in_words(p, s), symbol("X"), row(s.point.tolist()), "m")
     if s.depth_sigma is not None and not s.vague:
         yield _depth_sigma(s)
     yield Fold(IMAGES)
@@ -49,6 +49,14 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     yield from _uncertainty(p, s)
     if p.noise > 0.0:
         yield _noise(p, s)
+
+
+def _point_in_words(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """Short: a line more would move the pictures while a hand is in them."""
+    if s.matched is None:
+        return f"Point by the {NAMES[p.method]} method"
+    name = NAMES[p.method].removesuffix("-point")
+    return f"{name[0].upper()}{name[1:]} point, {_length(s.matched.apart)} from a corner"
 
 
 def fb_over(doffs: float) -> str:

@@ -15,6 +15,7 @@ from geometry import triangulation as tri
 from geometry.arrays import Array
 from geometry.camera import Camera, parallel_rig
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
+from sims.triangulation import corners
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import Method, TriangulationParams
 
@@ -28,8 +29,6 @@ PICTURE_WIDTH = 0.4
 """Metres that a picture is wide where it stands in the scene."""
 BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
 """Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
-WORLD = (-0.42, 3.653, 0.0)
-"""Metres by which the little world is moved: the point of the defaults is straight above the second post."""
 SIGMAS = 3.0
 """Standard deviations up to which the ellipsoid is drawn."""
 DRAWN = 0.5
@@ -53,7 +52,8 @@ class MethodResult:
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Both cameras, their F, and the corners of each picture in its camera's axes where it stands in the scene."""
+    """Both cameras, their F, the corners of each picture in its camera's axes where it stands in the scene, and the
+    pixels of the little world's corners."""
 
     left: Camera
     right: Camera
@@ -61,6 +61,7 @@ class Rig:
     corners_left: Array
     corners_right: Array
     size: float
+    world: Array
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,8 @@ class TriangulationSolution:
     singular_values: Array
     least_vector: Array
     """Singular vector of the least of them: the point of the linear method, homogeneous."""
+    matched: corners.Matched | None
+    """The corner of the little world on which both image points are."""
 
     @property
     def depth(self) -> float | None:
@@ -155,6 +158,7 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         sight_left=pair(cameras.left.normalized(left)),
         sight_right=pair(cameras.right.normalized(right)),
         **_linear(cameras, left, right),
+        matched=corners.matched(cameras.world, p.left_uv, p.right_uv, p.width, point),
     )
 
 
@@ -169,7 +173,7 @@ def _rig(baseline: float, focal: float, cx: float, cy: float, doffs: float, widt
     size, reach = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
     depth = PICTURE_WIDTH * reach * focal / width
     at_left, at_right = (Camera(each.K, np.eye(4)).frustum_corners(width, height, depth) for each in (left, right))
-    return Rig(left, right, fundamental(left, right), at_left, at_right, size)
+    return Rig(left, right, fundamental(left, right), at_left, at_right, size, corners.seen(left, right))
 
 
 def sigma_of(noise: float) -> float:

@@ -23,7 +23,7 @@ from sims.kit import readout
 from sims.kit.frame import inside
 from sims.kit.readout import figure
 from sims.kit.sim import jsonable
-from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, calibration, solve
+from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, calibration, corners, solve
 from sims.triangulation import solution as mathematics
 from sims.triangulation.panes import magnification, panes
 from sims.triangulation.scene_closeup import chord
@@ -900,3 +900,25 @@ def test_the_little_world_is_where_both_pictures_show_it(rig: Rig) -> None:
     for pane, pixel in zip(panes(START, solve(START)), projections(START, top), strict=False):
         corners = re.findall(r"[ML]([-\d.]+) ([-\d.]+)", pane.svg.partition('class="s3-faces"')[2])
         assert np.linalg.norm(np.array(corners, dtype=float) - pixel, axis=1).min() < 1.0
+
+
+@pytest.mark.parametrize("rig_of", [lambda p: {}, calibration.kitti])
+def test_who_matches_a_corner_is_told_how_far_from_it_the_point_is(rig_of: Any) -> None:
+    assert solve(START).matched is None
+    p = START.changed(rig_of(START))
+    corner = min(corners.PLACES.tolist(), key=lambda place: math.dist(place, (0.3, 4.0, 1.0)))
+    p = p.changed(actions.hold_point(p, tuple(corner)))
+    solution = solve(p)
+    assert solution.matched is not None
+    assert solution.matched.place.tolist() == corner
+    assert solution.matched.apart == pytest.approx(0.0, abs=1e-9)
+    near = p.changed({"right_uv": (p.right_uv[0] - 2.0, p.right_uv[1])})
+    solution = solve(near)
+    assert solution.matched is not None
+    assert solution.point is not None
+    assert solution.matched.apart == pytest.approx(math.dist(solution.point, corner))
+    note = f"DLT point, {figure(1000 * solution.matched.apart, 1)}\u2009mm from a corner"
+    assert note in [each.note for each in SIM.readouts(near, solution) if isinstance(each, readout.Formula)]
+    assert SIM.caption(near.changed({"before": None}), solution).startswith("That is a corner of a post: your point is")
+    off = p.changed({"right_uv": (p.right_uv[0], p.right_uv[1] + 7.0 * p.width / 640)})
+    assert solve(off).matched is None
