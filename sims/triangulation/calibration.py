@@ -37,6 +37,8 @@ KITTI_PAIRS = (
     ("P2", "P3", ""),
 )
 """Names of both projection matrices, and of the size of the pictures where a file has it."""
+DECIMALS = 9
+"""Of metres and pixels: more are there by rounding alone."""
 ALIKE = 1e-6
 """By what part numbers may differ that are the same for both cameras."""
 
@@ -74,14 +76,20 @@ def _middlebury(entries: Mapping[str, str]) -> dict[str, float]:
     left, right = (_numbers(name, entries[name], 9) for name in ("cam0", "cam1"))
     (baseline,) = _numbers("baseline", entries["baseline"], 1)
     width, height = (_numbers(name, entries.get(name, ""), 1)[0] for name in ("width", "height"))
-    return {**_rig(left[:6], right[:6]), "baseline": baseline / 1000.0, "width": round(width), "height": round(height)}
+    return {
+        **_rig(left[:6], right[:6]),
+        "baseline": round(baseline / 1000.0, DECIMALS),
+        "width": round(width),
+        "height": round(height),
+    }
 
 
 def _kitti(left: list[float], right: list[float], size: str) -> dict[str, float]:
     """The rig of two projection matrices (3, 4) by rows, whose fourth column has -f times the place of the camera."""
     rig = _rig([*left[:3], *left[4:7]], [*right[:3], *right[4:7]])
     width, height = _numbers("S_rect", size, 2) if size else (KITTI["width"], KITTI["height"])
-    return {**rig, "baseline": (left[3] - right[3]) / rig["focal"], "width": round(width), "height": round(height)}
+    baseline = round((left[3] - right[3]) / rig["focal"], DECIMALS)
+    return {**rig, "baseline": baseline, "width": round(width), "height": round(height)}
 
 
 def _rig(left: list[float], right: list[float]) -> dict[str, float]:
@@ -93,7 +101,7 @@ def _rig(left: list[float], right: list[float]) -> dict[str, float]:
         raise ValueError("The focal lengths differ, or pixels are skewed: this is for cameras that were rectified.")
     if not _alike([cy, right[5]]):
         raise ValueError("The principal points are at different heights: this is for cameras that were rectified.")
-    return {"focal": f, "cx": cx, "cy": cy, "doffs": right[2] - cx}
+    return {"focal": f, "cx": cx, "cy": cy, "doffs": round(right[2] - cx, DECIMALS)}
 
 
 def _alike(values: Iterable[float]) -> bool:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from geometry.triangulation import depth_sigma
-from sims.kit.readout import THIN, figure, quantity
+from sims.kit.readout import THIN, figure
 from sims.triangulation.params import OF_CURVE, TriangulationParams
+from sims.triangulation.readouts import length
 from sims.triangulation.solution import TriangulationSolution, sigma_of
 
 PLUS_MINUS = "±\u00a0"
@@ -18,9 +19,7 @@ def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
     if changed := _change(p, s):
         return changed
     if s.matched is not None and p.noise == 0.0:
-        return (
-            f"That is a corner of {s.matched.of}: your point is {quantity(100.0 * s.matched.apart, 'cm', 1)} from it."
-        )
+        return f"That is a corner of {s.matched.of}: your point is {length(s.matched.apart)} from it."
     if p.noise > 0.0:
         return "Noise makes the rays miss each other: the point may be anywhere in the ellipsoid."
     return "Drag a point in one picture onto a corner, then match it in the other."

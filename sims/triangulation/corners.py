@@ -21,6 +21,8 @@ THINGS: dict[Paint, str] = {
 }  # fmt: skip
 NEAR = 6.0
 """Pixels of a picture of 640 within which both image points are on a corner."""
+ALIKE = 0.15
+"""Part of the depth within which the result is then there too: beyond, it only lies in the corner's direction."""
 
 
 def _corners() -> dict[tuple[float, ...], str]:
@@ -61,4 +63,5 @@ def matched(pixels: Array, left: Pixel, right: Pixel, width: int, point: Array |
     k = int(off.argmin())
     if off.item(k) > NEAR * width / WIDTH:
         return None
-    return Matched(PLACES[k], OF[k], math.dist(PLACES[k].tolist(), point.tolist()))
+    apart = math.dist(PLACES[k].tolist(), point.tolist())
+    return Matched(PLACES[k], OF[k], apart) if apart <= ALIKE * point.item(1) else None

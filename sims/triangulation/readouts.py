@@ -55,8 +55,8 @@ def _point_in_words(p: TriangulationParams, s: TriangulationSolution) -> str:
     """Short: a line more would move the pictures while a hand is in them."""
     if s.matched is None:
         return f"Point by the {NAMES[p.method]} method"
-    name = NAMES[p.method].removesuffix("-point")
-    return f"{name[0].upper()}{name[1:]} point, {_length(s.matched.apart)} from a corner"
+    name = NAMES[p.method]
+    return f"{name[0].upper()}{name[1:]}: {length(s.matched.apart)} off a corner"
 
 
 def fb_over(doffs: float) -> str:
@@ -74,9 +74,9 @@ def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
     elif s.vague:
         yield Note("Almost parallel rays: a standard deviation of the depth is larger than the depth itself.", "warn")
     elif s.ellipsoid_axes is not None and s.drawn_part < 1.0:
-        length = quantity(2.0 * SIGMAS * s.ellipsoid_axes.item(0), "m", 0)
+        long = quantity(2.0 * SIGMAS * s.ellipsoid_axes.item(0), "m", 0)
         cut = "; the scene shows it up to half the depth from the point" if p.show_ellipsoid else ""
-        yield Note(f"Very unsure: the ellipsoid of 3σ is {length} long{cut}.", "near")
+        yield Note(f"Very unsure: the ellipsoid of 3σ is {long} long{cut}.", "near")
     others = [NAMES[m] for m in NAMES if m != p.method and s.by_method[m].status != s.status]
     if others:
         yield Note(f"The methods disagree on whether there is a point: see {' and '.join(others)} below.", "near")
@@ -106,14 +106,14 @@ def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
         errors = (found.reprojection_left, found.reprojection_right, found.reprojection_rms)
         apart = found.status if found.point is None else "–"
         if found.point is not None and s.point is not None:
-            apart = _length(math.dist(found.point, s.point))
+            apart = length(math.dist(found.point, s.point))
         cells = [figure(e, 3) if e is not None else "–" for e in errors]
         rows.append((words, cells[0], cells[1], cells[2], apart))
     true = () if s.true_point is None else ("true",)
     if s.true_point is not None:
         a, b = math.dist(s.measured_left, p.left_uv), math.dist(s.measured_right, p.right_uv)
         cells = [figure(e, 3) for e in (a, b, math.hypot(a, b) / math.sqrt(2.0))]
-        apart = "–" if s.point is None else _length(math.dist(s.true_point, s.point))
+        apart = "–" if s.point is None else length(math.dist(s.true_point, s.point))
         rows.append(("true point", cells[0], cells[1], cells[2], apart))
     words = "Reprojection error in pixels, and distance from the result"
     return Table(words, rows, tuple(NAMES), p.method, lights=true)
@@ -127,7 +127,8 @@ def _images(p: TriangulationParams, s: TriangulationSolution) -> Table:
     return Table(words, rows, lights=("left", "right"))
 
 
-def _length(metres: float) -> str:
+def length(metres: float) -> str:
+    """In millimetres where that says something."""
     return quantity(1000.0 * metres, "mm", 1) if metres < 10.0 else quantity(metres, "m", 0)
 
 
@@ -137,8 +138,8 @@ def _uncertainty(p: TriangulationParams, s: TriangulationSolution) -> Iterator[R
     yield _depth_sigma(s)
     yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
     yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
-    length = mathml(2.0 * SIGMAS * s.ellipsoid_axes.item(0), 2)
-    yield Formula("Length of the ellipsoid that is drawn, of 3σ", f"<mn>6</mn>{symbol('a', '1')}", length, "m")
+    long = mathml(2.0 * SIGMAS * s.ellipsoid_axes.item(0), 2)
+    yield Formula("Length of the ellipsoid that is drawn, of 3σ", f"<mn>6</mn>{symbol('a', '1')}", long, "m")
 
 
 def _depth_sigma(s: TriangulationSolution) -> Formula:

@@ -805,7 +805,7 @@ def test_a_long_ellipsoid_is_cut_and_its_length_said(rig: Rig) -> None:
 
 def test_a_calibration_of_middlebury_is_understood_in_metres_and_pixels() -> None:
     assert SIM.paste is not None
-    assert SIM.paste.found(SIM.paste.example) == pytest.approx(calibration.MIDDLEBURY)
+    assert SIM.paste.found(SIM.paste.example) == calibration.MIDDLEBURY, "and nothing by rounding, for the link"
 
 
 KITTI_TEXT = """\
@@ -917,8 +917,17 @@ def test_who_matches_a_corner_is_told_how_far_from_it_the_point_is(rig_of: Any) 
     assert solution.matched is not None
     assert solution.point is not None
     assert solution.matched.apart == pytest.approx(math.dist(solution.point, corner))
-    note = f"DLT point, {figure(1000 * solution.matched.apart, 1)}\u2009mm from a corner"
+    note = f"DLT: {figure(1000 * solution.matched.apart, 1)}\u2009mm off a corner"
     assert note in [each.note for each in SIM.readouts(near, solution) if isinstance(each, readout.Formula)]
     assert SIM.caption(near.changed({"before": None}), solution).startswith("That is a corner of a post: your point is")
     off = p.changed({"right_uv": (p.right_uv[0], p.right_uv[1] + 7.0 * p.width / 640)})
     assert solve(off).matched is None
+
+
+def test_a_point_in_the_direction_of_a_corner_alone_is_no_match() -> None:
+    p = START.changed({**calibration.MIDDLEBURY, "baseline": 0.05})
+    corner = min(corners.PLACES.tolist(), key=lambda place: math.dist(place, (0.3, 4.0, 1.0)))
+    p = p.changed(actions.hold_point(p, tuple(corner)))
+    assert solve(p).matched is not None
+    farther = p.changed({"right_uv": (p.right_uv[0] + 20.0, p.right_uv[1])})
+    assert solve(farther).matched is None
