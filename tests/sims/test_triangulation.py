@@ -931,3 +931,22 @@ def test_a_point_in_the_direction_of_a_corner_alone_is_no_match() -> None:
     assert solve(p).matched is not None
     farther = p.changed({"right_uv": (p.right_uv[0] + 20.0, p.right_uv[1])})
     assert solve(farther).matched is None
+
+
+@pytest.mark.parametrize("run", [calibration.middlebury, calibration.kitti])
+def test_a_real_rig_stands_in_the_scene_as_its_numbers_say(rig: Rig, run: Any) -> None:
+    p = START.changed({**run(START), "noise": 1.0})
+    rig.show(p)
+    last = np.array([p.width, p.height]) - 0.5
+    corners_of_picture = [(-0.5, -0.5), (last[0], -0.5), (*last,), (-0.5, last[1])]
+    for side, sign, cx in (("left", -0.5, p.cx), ("right", 0.5, p.cx + p.doffs)):
+        centre = np.array([sign * p.baseline, 0.0, 1.0])
+
+        def pixels(places: Array, centre: Array = centre, cx: float = cx) -> Array:
+            x, y, z = (places.reshape(-1, 3) - centre).T
+            return np.column_stack([cx + p.focal * x / y, p.cy - p.focal * z / y])
+
+        measured = mathematics.measured(p)[side == "right"]
+        np.testing.assert_allclose(pixels(rig.model.points(f"/{side}/ray")[0, 1]), [measured], rtol=0, atol=1e-2)
+        seen = pixels(rig.model.points(f"/{side}/picture"))
+        np.testing.assert_allclose(seen, corners_of_picture, rtol=0, atol=1e-2)
