@@ -38,7 +38,7 @@ KITTI_PAIRS = (
 )
 """Names of both projection matrices, and of the size of the pictures where a file has it."""
 DECIMALS = 9
-"""Of metres and pixels: more are there by rounding alone."""
+"""What metres and pixels are rounded to: more digits are there by arithmetic alone."""
 ALIKE = 1e-6
 """By what part numbers may differ that are the same for both cameras."""
 

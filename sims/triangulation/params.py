@@ -98,6 +98,10 @@ class TriangulationParams(Params):
         """The pixel in the middle of a picture."""
         return 0.5 * self.last[0], 0.5 * self.last[1]
 
+    def form(self) -> tuple[Any, ...]:
+        """The size of the pictures: pixels, which move with every hand, would have all controls made anew."""
+        return self.width, self.height
+
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "focal":
             return 200.0, NARROWEST * max(self.width, WIDTH)

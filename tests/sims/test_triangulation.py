@@ -950,3 +950,12 @@ def test_a_real_rig_stands_in_the_scene_as_its_numbers_say(rig: Rig, run: Any) -
         np.testing.assert_allclose(pixels(rig.model.points(f"/{side}/ray")[0, 1]), [measured], rtol=0, atol=1e-2)
         seen = pixels(rig.model.points(f"/{side}/picture"))
         np.testing.assert_allclose(seen, corners_of_picture, rtol=0, atol=1e-2)
+
+
+def test_controls_are_made_anew_for_another_size_of_the_pictures_alone(rig: Rig) -> None:
+    """A hand that moves pixels or cameras doesn't pay for fourteen controls."""
+    rig.show(START)
+    assert slid(START, baseline=1.0).form() == START.form()
+    rig.show(START.changed({"width": 2880}))
+    slider = next(xml(rig.column.parts["control:focal"]).iter("input"))
+    assert float(slider.get("max", "")) == 1500.0 * 2880 / 640
