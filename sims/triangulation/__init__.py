@@ -88,7 +88,7 @@ CONTRACT = Contract(
     parameters="baseline focal left_uv right_uv noise seed method hold width height cx cy doffs",
     solution=(
         "point by_method ray_gap closest_points disparity depth_from_disparity covariance"
-        " ellipsoid_axes parallax_angle in_front ray_angle equations singular_values least_vector"
+        " ellipsoid_axes parallax_angle in_front ray_angle point_angle equations singular_values least_vector"
     ),
     link="baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
     state={

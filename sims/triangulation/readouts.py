@@ -40,9 +40,9 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     yield _methods(p, s)
     yield Formula("Gap between the rays", symbol("g"), mathml(100.0 * s.ray_gap, 2), "cm")
     yield Formula("Angle between the two rays", symbol("α"), mathml(s.ray_angle, 2), "°")
-    if s.point is not None:
+    if s.point_angle is not None:
         words = "Angle at the point, between the lines to both cameras (parallax)"
-        yield Formula(words, symbol("β"), mathml(s.parallax_angle, 2), "°")
+        yield Formula(words, symbol("β"), mathml(s.point_angle, 2), "°")
     yield Fold(EQUATIONS)
     yield from _equations(s)
     yield Fold(SURENESS)

@@ -82,9 +82,12 @@ class TriangulationSolution:
     """Quaternion that turns X, Y, Z to its axes."""
     depth_sigma: float | None
     parallax_angle: float
-    """Degrees between the lines from the result to both cameras."""
+    """Degrees between the lines of sight as the method has them: the mid-point's are the rays, those of the others go
+    to their point."""
     ray_angle: float
-    """Degrees between both rays, which needn't meet there."""
+    """Degrees between both rays."""
+    point_angle: float | None
+    """Degrees, at the result, between the lines to both cameras."""
     in_front: bool
     measured_left: Pixel
     measured_right: Pixel
@@ -147,6 +150,7 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         **_uncertainty(cameras, point, sigma_of(p.noise)),
         parallax_angle=math.degrees(float(chosen.parallax)),
         ray_angle=math.degrees(float(middle.parallax)),
+        point_angle=None if point is None else _angle_at(point, p.baseline),
         in_front=bool(chosen.in_front),
         measured_left=left,
         measured_right=right,
@@ -215,6 +219,13 @@ def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -
     at_left, at_right = (pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
     a, b = math.dist(at_left, left), math.dist(at_right, right)
     return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
+
+
+def _angle_at(point: Array, baseline: float) -> float:
+    """Degrees at a point between the lines to both cameras, which stand at a height of 1 m."""
+    x, y, z = point.tolist()
+    flat = math.hypot(y, z - 1.0)  # from the line through both cameras
+    return math.degrees(math.atan2(x + 0.5 * baseline, flat) - math.atan2(x - 0.5 * baseline, flat))
 
 
 def _linear(cameras: Rig, left: Pixel, right: Pixel) -> dict[str, Any]:

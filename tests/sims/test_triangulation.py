@@ -716,8 +716,9 @@ def formulas(p: TriangulationParams) -> dict[str, str]:
     return {each.note: words(each.html()) for each in found}
 
 
-def test_both_angles_are_named_and_differ_where_the_rays_miss() -> None:
-    p = START.changed({"left_uv": (639, 479), "right_uv": (320, 0), "method": "dlt"})
+@pytest.mark.parametrize("method", ["dlt", "midpoint", "optimal"])
+def test_both_angles_are_named_and_differ_where_the_rays_miss(method: str) -> None:
+    p = START.changed({"left_uv": (639, 479), "right_uv": (320, 0), "method": method})
     solution = solve(p)
     a, b = (np.array([(u - 320) / 600, 1.0, -(v - 240) / 600]) for u, v in (p.left_uv, p.right_uv))
     rays = math.degrees(math.acos(a @ b / math.sqrt(a @ a * (b @ b))))
@@ -725,7 +726,7 @@ def test_both_angles_are_named_and_differ_where_the_rays_miss() -> None:
     a, b = (solution.point - np.array([x, 0.0, 1.0]) for x in (-0.3, 0.3))
     there = math.degrees(math.acos(a @ b / math.sqrt(a @ a * (b @ b))))
     assert abs(rays - there) > 1.0
-    assert (solution.ray_angle, solution.parallax_angle) == pytest.approx((rays, there))
+    assert (solution.ray_angle, solution.point_angle) == pytest.approx((rays, there))
     said = formulas(p)
     assert figure(rays, 2) in said["Angle between the two rays"]
     assert figure(there, 2) in said["Angle at the point, between the lines to both cameras (parallax)"]
