@@ -7,8 +7,9 @@ from typing import Any
 from sims.triangulation.depth_plot import within
 from sims.triangulation.holding import apart, in_sight
 from sims.triangulation.params import FARTHEST, LAST_SEED, TriangulationParams
+from sims.triangulation.rig import rig
 from sims.triangulation.scale import Scale
-from sims.triangulation.solution import TriangulationSolution, measured, pair, rig
+from sims.triangulation.solution import TriangulationSolution, measured, pair
 
 
 def hold_point(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:

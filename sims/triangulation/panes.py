@@ -15,8 +15,9 @@ from sims.triangulation.corners import WORLD
 from sims.triangulation.depth_plot import plot
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, Method, TriangulationParams
+from sims.triangulation.rig import Rig, rig
 from sims.triangulation.scale import Scale
-from sims.triangulation.solution import Rig, TriangulationSolution, rig
+from sims.triangulation.solution import TriangulationSolution
 
 Side = Literal["left", "right"]
 MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100)

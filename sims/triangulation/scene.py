@@ -18,10 +18,11 @@ from sims.kit.world_drawing import draw_in_scene
 from sims.triangulation.corners import WORLD
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, TriangulationParams
+from sims.triangulation.rig import rig
 from sims.triangulation.scene_closeup import CloseUp
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
-from sims.triangulation.solution import METHODS, TriangulationSolution, rig
+from sims.triangulation.solution import METHODS, TriangulationSolution
 
 LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
 FAR = 12.0

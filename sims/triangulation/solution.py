@@ -13,11 +13,11 @@ import numpy as np
 from geometry import quaternion
 from geometry import triangulation as tri
 from geometry.arrays import Array
-from geometry.camera import Camera, parallel_rig
-from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
+from geometry.epipolar import epipolar_line_left, epipolar_line_right
 from sims.triangulation import corners
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import Method, TriangulationParams
+from sims.triangulation.rig import Rig, rig
 
 METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "dlt": tri.triangulate_dlt,
@@ -25,10 +25,6 @@ METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "optimal": tri.triangulate_optimal,
 }
 SAMPLES = 300
-PICTURE_WIDTH = 0.4
-"""Metres that a picture is wide where it stands in the scene."""
-BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
-"""Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
 SIGMAS = 3.0
 """Standard deviations up to which the ellipsoid is drawn."""
 DRAWN = 0.5
@@ -48,20 +44,6 @@ class MethodResult:
     reprojection_rms: float | None = None
     pixel_left: Pixel | None = None
     pixel_right: Pixel | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Rig:
-    """Both cameras, their F, the corners of each picture in its camera's axes where it stands in the scene, and the
-    pixels of the little world's corners."""
-
-    left: Camera
-    right: Camera
-    F: Array
-    corners_left: Array
-    corners_right: Array
-    size: float
-    world: Array
 
 
 @dataclass(frozen=True)
@@ -164,20 +146,6 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         **_linear(cameras, left, right),
         matched=corners.matched(cameras.world, p.left_uv, p.right_uv, p.width, point),
     )
-
-
-def rig(p: TriangulationParams) -> Rig:
-    """The cameras of a state."""
-    return _rig(p.baseline, p.focal, p.cx, p.cy, p.doffs, p.width, p.height)
-
-
-@lru_cache(maxsize=256)
-def _rig(baseline: float, focal: float, cx: float, cy: float, doffs: float, width: int, height: int) -> Rig:
-    left, right = parallel_rig(baseline, focal, (cx, cy), doffs=doffs)
-    size, reach = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
-    depth = PICTURE_WIDTH * reach * focal / width
-    at_left, at_right = (Camera(each.K, np.eye(4)).frustum_corners(width, height, depth) for each in (left, right))
-    return Rig(left, right, fundamental(left, right), at_left, at_right, size, corners.seen(left, right))
 
 
 def sigma_of(noise: float) -> float:

@@ -26,6 +26,7 @@ from sims.kit.sim import jsonable
 from sims.triangulation import SIM, TriangulationParams, TriangulationSolution, actions, calibration, corners, solve
 from sims.triangulation import solution as mathematics
 from sims.triangulation.panes import magnification, panes
+from sims.triangulation.rig import rig as rig_of
 from sims.triangulation.scene_closeup import chord
 from tests.frames import differences
 from tests.server import Rig
@@ -113,7 +114,7 @@ def test_linear_point_is_that_of_opencv(changes: dict[str, Any]) -> None:
 def test_optimal_point_projects_to_opencvs_corrected_pixels(changes: dict[str, Any]) -> None:
     p = START.changed(changes)
     left, right = mathematics.measured(p)
-    F = mathematics.rig(p).F
+    F = rig_of(p).F
     corrected = cv2.correctMatches(F, np.array([[left]]), np.array([[right]]))
     for ours, theirs in zip(projections(p, found(p, "optimal")), corrected, strict=True):
         np.testing.assert_allclose(ours, np.ravel(theirs), rtol=0, atol=1e-6)
@@ -903,10 +904,10 @@ def test_the_little_world_is_where_both_pictures_show_it(rig: Rig) -> None:
         assert np.linalg.norm(np.array(corners, dtype=float) - pixel, axis=1).min() < 1.0
 
 
-@pytest.mark.parametrize("rig_of", [lambda p: {}, calibration.kitti])
-def test_who_matches_a_corner_is_told_how_far_from_it_the_point_is(rig_of: Any) -> None:
+@pytest.mark.parametrize("preset", [lambda p: {}, calibration.kitti])
+def test_who_matches_a_corner_is_told_how_far_from_it_the_point_is(preset: Any) -> None:
     assert solve(START).matched is None
-    p = START.changed(rig_of(START))
+    p = START.changed(preset(START))
     corner = min(corners.PLACES.tolist(), key=lambda place: math.dist(place, (0.3, 4.0, 1.0)))
     p = p.changed(actions.hold_point(p, tuple(corner)))
     solution = solve(p)
