@@ -6,7 +6,7 @@ A field's type says its kind (`sims.kit.fields`); the string below it says what 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Self
 from urllib.parse import urlencode
 
@@ -53,6 +53,10 @@ class Params(BaseModel):
         """Least and greatest value of a numeric field in this state; override where they depend on its `form`."""
         return self.numeric[name].bounds
 
+    def ranges(self, name: str) -> Sequence[tuple[float, float]]:
+        """The same for each number of a numeric field; override where those of a vector's entries depend on `form`."""
+        return self.numeric[name].ranges(getattr(self, name), self.bounds(name))
+
     def label(self, name: str) -> str:
         """Words beside the control of a field in this state."""
         return self.kinds[name].label
@@ -93,7 +97,7 @@ class Params(BaseModel):
         if len(changes) == 1 and (fast := self._number_moved(*next(iter(changes.items())))):
             return fast
         state = self.model_copy(update=dict(changes))
-        kept = {name: kind.clamped(getattr(state, name), state.bounds(name)) for name, kind in self.numeric.items()}
+        kept = {name: kind.clamped(getattr(state, name), state.ranges(name)) for name, kind in self.numeric.items()}
         return self.changed({**changes, **kept})
 
     def _number_moved(self, name: str, value: Any) -> Self | None:
@@ -106,9 +110,9 @@ class Params(BaseModel):
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
         for name, kind in self.numeric.items():
-            value, bounds = getattr(self, name), self.bounds(name)
-            if not kind.within(value, bounds):
-                raise refusal([name], f"{name} must be {spans(kind.ranges(value, bounds))}, got {spell(value)}")
+            value, ranges = getattr(self, name), self.ranges(name)
+            if not kind.within(value, ranges):
+                raise refusal([name], f"{name} must be {spans(ranges)}, got {spell(value)}")
         return self
 
     def query(self) -> str:

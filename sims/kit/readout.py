@@ -38,40 +38,57 @@ Links = tuple[tuple[str, ...], ...]
 """By rows: what each entry of a matrix is highlighted with, several names with blanks between; empty for nothing."""
 
 
-def mathml(value: Any, digits: int = 3, *, roles: tuple[str, ...] = (), links: Links = ()) -> str:
+def mathml(
+    value: Any, digits: int = 3, *, roles: tuple[str, ...] = (), links: Links = (), rows: tuple[str, ...] = ()
+) -> str:
     """A number, vector (as a column) or matrix in MathML.
 
     `roles` are colours of the palette for a matrix's columns, with lines like those of the axes as a second cue.
+    `rows` are cameras' for its rows, with their letters before them.
     """
     array = np.asarray(value, dtype=float)
-    return _mathml(array.shape, array.tobytes(), digits, roles, links)
+    return _lettered(rows) + _mathml(array.shape, array.tobytes(), digits, roles, links, rows)
+
+
+@lru_cache(maxsize=8)
+def _lettered(rows: tuple[str, ...]) -> str:
+    """The letters of rows, such as L for `left`, under each other."""
+    letters = "".join(f'<mtr><mtd class="s3-{row}"><mi>{row[0].upper()}</mi></mtd></mtr>' for row in rows)
+    return f"<mtable>{letters}</mtable>" if rows else ""
 
 
 @lru_cache(maxsize=512)
-def _mathml(shape: tuple[int, ...], numbers: bytes, digits: int, roles: tuple[str, ...], links: Links) -> str:
+def _mathml(
+    shape: tuple[int, ...], numbers: bytes, digits: int, roles: tuple[str, ...], links: Links, rows: tuple[str, ...]
+) -> str:
     """As `mathml`; most matrices of a state were in the state before it too."""
-    return _layout(shape, roles, links) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
+    return _layout(shape, roles, links, rows) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
 
 
 @lru_cache(maxsize=128)
-def _layout(shape: tuple[int, ...], roles: tuple[str, ...], links: Links) -> str:
+def _layout(shape: tuple[int, ...], roles: tuple[str, ...], links: Links, of_rows: tuple[str, ...]) -> str:
     """MathML with a place for each figure of a number (), column (n,) or matrix (n, m)."""
     if not shape:
         return "<mn>%s</mn>"
     rows, columns = (*shape, 1)[:2]
     body = ""
     for i in range(rows):
-        entries = [f"<mtd{_entry(i, k, rows, roles, links)}><mn>%s</mn></mtd>" for k in range(columns)]
+        of_row = f"s3-{of_rows[i]}" if of_rows else ""
+        kinds = [of_row or _of_column(k, roles, last=i == rows - 1) for k in range(columns)]
+        entries = [_entry(kind, links[i][k] if links else "") for k, kind in enumerate(kinds)]
         body += f"<mtr>{''.join(entries)}</mtr>"
     return f'<mtable class="s3-matrix">{body}</mtable>'
 
 
-def _entry(i: int, k: int, rows: int, roles: tuple[str, ...], links: Links) -> str:
-    """Attributes of a matrix's entry."""
-    role = roles[k] if k < len(roles) else ""
-    link = links[i][k] if links else ""
-    end = " s3-foot" if role and i == rows - 1 else ""
-    return (f' class="s3-{role}{end}"' if role else "") + (f' data-link="{escape(link)}"' if link else "")
+def _of_column(k: int, roles: tuple[str, ...], *, last: bool) -> str:
+    """The class of an entry for the role of its column, whose line is under the last row."""
+    return f"s3-{roles[k]}{' s3-foot' if last else ''}" if k < len(roles) and roles[k] else ""
+
+
+def _entry(kind: str, link: str) -> str:
+    """The place of a matrix's entry, of a class and with a link."""
+    marked = (f' class="{kind}"' if kind else "") + (f' data-link="{escape(link)}"' if link else "")
+    return f"<mtd{marked}><mn>%s</mn></mtd>"
 
 
 def significant(value: npt.ArrayLike, digits: int = 5) -> str:

@@ -111,6 +111,14 @@ def test_what_a_button_copies_stands_in_it() -> None:
     assert not list(xml(Formula("Matrix", "M", mathml(np.eye(2))).html()).iter("button"))
 
 
+def test_rows_can_be_those_of_cameras_and_have_their_letters() -> None:
+    html = mathml([[1.0, 2.0], [3.0, 4.0]], 1, rows=("left", "right"))
+    letters, matrix = re.findall(r"<mtable.*?</mtable>", html)
+    assert re.findall(r'class="s3-(left|right)"><mi>(.)</mi>', letters) == [("left", "L"), ("right", "R")]
+    entries = re.findall(r'<mtd class="(.*?)"><mn>(.*?)</mn>', matrix)
+    assert entries == [("s3-left", "1.0"), ("s3-left", "2.0"), ("s3-right", "3.0"), ("s3-right", "4.0")]
+
+
 def test_a_tuple_is_written_in_a_row() -> None:
     assert words(row((1.0, -2.0, 0.5), 1)) == "( 1.0 , −2.0 , 0.5 )"
 

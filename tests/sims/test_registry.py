@@ -369,7 +369,8 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         step = NUMERIC[sim.slug][name].step
         aims = [low, high, high - step]
         if isinstance(kind, Vector):
-            aims = list(zip(*((low, high, high - step) for low, high in kind.each), strict=True))
+            ranges = rig.session.params.ranges(name)
+            aims = list(zip(*((low, high, high - step) for low, high in ranges), strict=True))
     for aim in aims:
         rig.browser.move(name, aim)
         rig.settle()
@@ -377,9 +378,9 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         wanted = shown(rig.session.params, name)
         assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None)
     if isinstance(kind, Vector):
-        rig.browser.move(f"{name}.1", kind.each[1][0])
+        rig.browser.move(f"{name}.1", ranges[1][0])
         rig.settle()
-        assert getattr(rig.session.params, name) == pytest.approx((*aims[-1][:1], kind.each[1][0], *aims[-1][2:]))
+        assert getattr(rig.session.params, name) == pytest.approx((*aims[-1][:1], ranges[1][0], *aims[-1][2:]))
     assert not rig.browser.refused
 
 
