@@ -11,7 +11,7 @@ import numpy.typing as npt
 from geometry.arrays import Array
 
 Colors = npt.NDArray[np.uint8]
-EACH = ("points", "colors", "intensity", "ring", "scan", "normals")
+EACH = ("points", "colors", "intensity", "ring", "scan", "normals", "counts")
 """What a cloud has of each point."""
 
 
@@ -20,7 +20,8 @@ class Cloud:
     """Points (N, 3) in metres, and what is known of each: None if nothing is.
 
     `colors` (N, 3) are RGB 0–255, `intensity` (N,) is 0–1, `ring` (N,) the laser of a rotating lidar, `scan` (N,)
-    the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from. `dropped` points of the
+    the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from, `counts` (N,) how many
+    measured points it is the mean of, if it is one. `dropped` points of the
     file had no finite coordinates. `truth` (4, 4) brings scan 1 onto scan 0, where that is known.
     Of points too many to show, `left_out` aren't here, and `strays` were far from all others. `origin` (3,) was taken
     from coordinates that were far away. Of a file: `normals` (N, 3) are its own, of length 1 or, where it has none, 0;
@@ -50,6 +51,7 @@ class Cloud:
     unit: str = "metres"
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+    counts: npt.NDArray[np.intp] | None = None
 
     def __len__(self) -> int:
         return len(self.points)
@@ -62,10 +64,16 @@ class Cloud:
         return replace(self, **kept, sensor=sensor)
 
     def with_means(
-        self, points: Array, colors: Colors | None, intensity: Array | None, normals: Array | None = None
-    ) -> Cloud:
+        self, points: Array, colors: Colors | None, intensity: Array | None, normals: Array | None = None,
+        counts: npt.NDArray[np.intp] | None = None,
+    ) -> Cloud:  # fmt: skip
         """The same cloud with these in place of each point's."""
-        return replace(self, points=points, colors=colors, intensity=intensity, normals=normals)
+        return replace(self, points=points, colors=colors, intensity=intensity, normals=normals, counts=counts)
+
+    @property
+    def measured(self) -> npt.NDArray[np.intp]:
+        """How many measured points (N,) each stands for."""
+        return np.ones(len(self), np.intp) if self.counts is None else self.counts
 
     def followed_by(self, other: Cloud) -> Cloud:
         """Both clouds' points; what only one of them knows is lost."""

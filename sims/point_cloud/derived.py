@@ -49,6 +49,7 @@ def _thinned(cloud: Cloud, size: float) -> Cloud:
         colors=None if cloud.colors is None else np.rint(cells.mean(cloud.colors)).astype(np.uint8),
         intensity=None if cloud.intensity is None else cells.mean(cloud.intensity),
         normals=None if cloud.normals is None else _of_length_one(cells.mean(cloud.normals)),
+        counts=cells.counts,
     )
 
 

@@ -174,10 +174,16 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         yield from _registration(s.registration)
     if s.surface is not None and s.surface.triangles:
         f = s.surface
-        yield Formula(f"Triangles, on {count(f.points)} points", symbol("n"), f"<mn>{count(f.triangles)}</mn>")
+        cells = f"{count(f.points)} means of cells of {quantity(f.cell, 'm', 3)}"
+        yield Formula(f"Triangles, on {cells}", symbol("n"), f"<mn>{count(f.triangles)}</mn>")
         yield Formula("Area", symbol("A"), mathml(f.area, 2), "m²")
-        yield Formula("Volume of what is closed", symbol("V"), mathml(f.volume), "m³")
-        yield Formula(f"Radius of the ball; cells of {quantity(f.cell, 'm', 3)}", symbol("α"), mathml(f.radius), "m")
+        yield Formula(
+            "Volume that the ball can’t get into; next to nothing where there is a gap",
+            symbol("V"),
+            mathml(f.volume),
+            "m³",
+        )
+        yield Formula("Radius of the ball", symbol("α"), mathml(f.radius), "m")
 
 
 def _registration(r: Registered) -> Iterator[Readout]:

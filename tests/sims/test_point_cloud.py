@@ -381,6 +381,34 @@ def test_the_statue_has_a_surface() -> None:
     assert found.faces.max() < len(found.vertices)
 
 
+THINNED = {"room": (0.05, 0.1), "street": (0.1, 0.3), "statue": (0.02, 0.03, 0.05, 0.07, 0.1), "two-scans": (0.05, 0.1)}
+
+
+@pytest.mark.parametrize("name", THINNED)
+def test_a_thinned_cloud_has_the_same_surface(name: str) -> None:
+    """Cells of the mesh that are about as large as the voxels have one point each, which isn't few."""
+    whole = solve(CloudParams(dataset=name, process="surface")).surface
+    assert whole is not None
+    for voxel in THINNED[name]:
+        found = solve(CloudParams(dataset=name, process="surface", voxel_size=voxel)).surface
+        assert found is not None
+        assert found.area == pytest.approx(whole.area, rel=0.12), voxel
+        assert found.triangles * found.cell**2 == pytest.approx(whole.triangles * whole.cell**2, rel=0.35), voxel
+
+
+def test_a_cloud_with_a_point_in_each_cell_has_a_surface() -> None:
+    """A file that was thin before it came; and the volume inside is known."""
+    rng = np.random.default_rng(1)
+    about, round_ = 2.0 * np.pi * rng.random((2, 60_000))
+    kept = rng.random(60_000) < (2.0 + 0.6 * np.cos(round_)) / 2.6  # as many on each piece of the surface
+    about, radius, round_ = about[kept], 2.0 + 0.6 * np.cos(round_[kept]), round_[kept]
+    points = np.stack([radius * np.cos(about), radius * np.sin(about), 0.6 * np.sin(round_)], axis=1)
+    for file in (points, clouds.voxels(points, 0.1).points):
+        found = processes.surface(Cloud("torus", file), 0.0, 0.0)
+        assert found is not None
+        assert found.volume == pytest.approx(2.0 * np.pi**2 * 2.0 * 0.36, rel=0.02)
+
+
 def test_play_ends_at_the_last_step() -> None:
     params = CloudParams(dataset="two-scans", process="register", voxel_size=0.09)
     steps = play(params)
