@@ -155,7 +155,7 @@ def test_a_bad_file_is_refused_in_words_and_changes_nothing(local: Local, name: 
     assert words in answer.json()["detail"]
     assert answer.json()["detail"][0].isupper()
     assert desk.params == before
-    assert not desk.session.uploaded
+    assert not desk.session.uploads
 
 
 @pytest.mark.parametrize(
@@ -439,4 +439,4 @@ def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) 
     assert local.http.get("/healthz").status_code == 200
     assert desk.params.dataset == "room"
     wait_for(lambda: set(clouds._uploads) == before, "the file to be forgotten")
-    assert not desk.session.uploaded
+    assert not desk.session.uploads
