@@ -49,7 +49,7 @@ class Session:
         self.given = () if library is None else (library,)
         """What the sim's functions need besides the parameters."""
         self.uploads: dict[str, int] = {}
-        """Bytes of files that people uploaded, by what the library knows them as; they stay as long as they are shown."""
+        """Bytes of files that people uploaded, by what the library knows them as; they stay while they are shown."""
         self._solver = solver
         self.telling = Telling(self.state)
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time

@@ -22,7 +22,8 @@ class Cloud:
     `colors` (N, 3) are RGB 0–255, `intensity` (N,) is 0–1, `ring` (N,) the laser of a rotating lidar, `scan` (N,)
     the number of the scan a point is from, `sensor` (3,) or (N, 3) where it was seen from, `counts` (N,) how many
     measured points it is the mean of, if it is one. `dropped` points of the
-    file had no finite coordinates. `truth` (4, 4) brings scan 1 onto scan 0, where that is known.
+    file had no finite coordinates. `apart` says that scans 0 and 1 aren't registered yet; `truth` (4, 4) brings
+    scan 1 onto scan 0, where that is known.
     Of points too many to show, `left_out` aren't here, and `strays` were far from all others. `origin` (3,) was taken
     from coordinates that were far away. Of a file: `normals` (N, 3) are its own, of length 1 or, where it has none, 0;
     `intensity_span` are the file's values for intensities 0 and 1; `columns` are its columns' names, `roles` what each
@@ -38,6 +39,7 @@ class Cloud:
     scan: npt.NDArray[np.uint8] | None = None
     sensor: Array | None = None
     dropped: int = 0
+    apart: bool = False
     truth: Array | None = None
     simulated: bool = False
     left_out: int = 0
@@ -82,3 +84,22 @@ class Cloud:
             both = getattr(self, name), getattr(other, name)
             joined[name] = None if any(v is None for v in both) else np.concatenate(both)
         return replace(self, **joined)
+
+    def with_second(self, other: Cloud) -> Cloud:
+        """This cloud as the first scan and another one as the second, which isn't registered to it yet.
+
+        Each stays where it is; of two that are far from their origin, both from this one's.
+        """
+        points = other.points
+        if self.origin is not None and other.origin is not None:
+            points = points + (other.origin - self.origin)
+        first, second = (
+            replace(one, scan=np.full(len(one), k, np.uint8), sensor=one.sensor_of_each)
+            for k, one in enumerate((self, replace(other, points=points)))
+        )
+        return replace(first.followed_by(second), apart=True, truth=None)
+
+    @property
+    def sensor_of_each(self) -> Array | None:
+        """Where each point (N, 3) was seen from, if that is known."""
+        return None if self.sensor is None else np.broadcast_to(self.sensor, self.points.shape)
