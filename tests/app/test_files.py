@@ -137,6 +137,23 @@ def test_what_is_shown_can_be_taken_home(local: Local) -> None:
     assert local.http.get(f"{desk.path}result/other.ply").status_code == 404
 
 
+def test_two_files_of_a_registration_are_kept_together(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("first.ply", FILE).status_code == 200
+    desk.change({"process": "register"})
+    first = desk.params.file
+    assert desk.bring("second.ply", FILE).status_code == 200
+    second = desk.params.second
+    assert (desk.params.file, set(desk.session.uploads)) == (first, {first, second})
+    assert desk.bring("another.ply", FILE).status_code == 200
+    assert set(desk.session.uploads) == {first, desk.params.second}
+    assert desk.params.second != second
+    desk.change({"process": "none"})
+    assert desk.bring("alone.ply", FILE).status_code == 200
+    assert desk.params.second is None
+    assert desk.session.uploads == {desk.params.file: len(FILE)}
+
+
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
