@@ -63,7 +63,7 @@ class Course:
     converged: bool
     unobservable: Array
     reaches: tuple[float, ...]
-    """Of each step."""
+    """Greatest distance of a pair, at each step."""
     second_points: int
 
 
