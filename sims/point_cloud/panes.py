@@ -128,7 +128,7 @@ def section(chosen: Selected) -> Pane:
         for k, (x, y) in enumerate(chosen.section.tolist())
     )
     plane = f'<path d="M{LEFT} {level}H{END}" class="s3-ghost"/><text x="{LEFT}" y="{level - 6}">plane</text>'
-    note = f"{quantity(1000.0 * float(np.sqrt(chosen.eigenvalues[0])), 'mm', 1)} thick, {len(chosen.section)} points"
+    note = f"{quantity(1000.0 * float(np.sqrt(chosen.eigenvalues[0])), 'mm', 1)} thick"
     pane = _pane("Its neighbours from the side", note, plane + dots, HEIGHT)
     return replace(pane, name="section")
 

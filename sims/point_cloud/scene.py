@@ -34,7 +34,7 @@ RING = 0.04
 """Radius of the ring round the selected point, of the view's."""
 GROWS = 0.22
 """Diameter of a dot of size 1, of the edge of the cell that it is the mean of: thinned surfaces stay surfaces."""
-GHOST, PALE = 0.6, 0.5
+GHOST, PALE = 0.35, 0.6
 """Size of the original's dots, of those that are as large as the cloud alone says; and how much they differ from the
 page."""
 HELD = 0.035
@@ -86,7 +86,7 @@ class CloudScene:
         self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
         self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
         self.ring.draw(s.selected, view.radius)
-        self.about.draw(s, max(1.4 * dot, 0.5 * size), dot)
+        self.about.draw(s, max(1.4 * dot, 0.5 * size), GHOST * dot)
         self._original(s, GHOST * dot)
         self.grip.place(s.drawn.grip)
         self.plane.draw(s.drawn.ground)

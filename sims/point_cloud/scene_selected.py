@@ -31,7 +31,7 @@ class About:
         stage.linked("other", self.way)
 
     def draw(self, s: CloudSolution, size: float, dot: float) -> None:
-        """`size` of its neighbours' dots, and of a `dot` that was measured, in metres."""
+        """`size` of its neighbours' dots, and of each `dot` that was merged, in metres."""
         self._plane(s, size)
         self._cells(s, dot)
         self._distance(s)
