@@ -48,8 +48,8 @@ class Session:
         self.library = library
         self.given = () if library is None else (library,)
         """What the sim's functions need besides the parameters."""
-        self.uploaded, self.uploaded_bytes = "", 0
-        """What the library knows the file as that somebody uploaded, and its size; it stays as long as the session."""
+        self.uploads: dict[str, int] = {}
+        """Bytes of files that people uploaded, by what the library knows them as; they stay while they are shown."""
         self._solver = solver
         self.telling = Telling(self.state)
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
@@ -195,11 +195,13 @@ class Session:
             take(find())
 
     def upload(self, known_as: str, size: int, changes: Mapping[str, Any]) -> None:
-        """Show a file of some bytes that the library has taken, in place of the one before."""
-        self.forget(self.uploaded)
-        self.uploaded, self.uploaded_bytes = known_as, size
+        """Show a file of some bytes that the library has taken; those that it takes the place of are forgotten."""
+        self.uploads[known_as] = size
         self.motion.stop()
         self._set(self.params.moved(changes))
+        shown = self.params.__dict__.values()
+        for name in [name for name in self.uploads if name not in shown]:
+            self.forget(name)
 
     def take(self, found: Any) -> None:
         """Take what was found in a text of somebody's own. Raises ValueError in words, or pydantic's."""
@@ -208,6 +210,7 @@ class Session:
 
     def forget(self, known_as: str) -> None:
         """Have the library forget an uploaded file."""
+        self.uploads.pop(known_as, None)
         if self.library is not None:
             self.library.remove(known_as)
 
@@ -317,7 +320,8 @@ class Session:
 
     def end(self) -> list[asyncio.Task[None]]:
         """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
-        self.forget(self.uploaded)
+        for name in [*self.uploads]:
+            self.forget(name)
         self.motion.stop()
         self.telling.end()
         working = self._tasks()

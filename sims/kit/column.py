@@ -54,7 +54,7 @@ class Column:
     def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
         """The whole column; `only`: of the controls, those of these parameters and actions."""
         offers = self.sim.offers(params, solution, *self._library)
-        parts = {f"control:{name}": controls.html(offers, name) for name in params.visible}
+        parts = self._inputs(offers, filled=True)
         if solution is not None:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
@@ -65,9 +65,19 @@ class Column:
         form = offers.form()
         if form != self._form:
             self._form = form
-            names = offers.params.visible
-            self._controls = {f"control:{name}": controls.html(offers, name, filled=False) for name in names}
+            self._controls = self._inputs(offers, filled=False)
         return self._controls
+
+    def _inputs(self, offers: Offers[Any], *, filled: bool) -> Parts:
+        """The controls and buttons; what is idle stays in the page, hidden."""
+        idle = offers.idle()
+        found = {f"control:{name}": controls.html(offers, name, filled=filled) for name in offers.params.visible}
+        first = next((a.name for a in self.sim.actions if not a.group and a.name not in idle), "")
+        found |= {f"action:{a.name}": button(a, primary=a.name == first) for a in self.sim.actions}
+        return {
+            name: f'<div hidden="">{html}</div>' if name.partition(":")[2] in idle else html
+            for name, html in found.items()
+        }
 
     def _rest(self, params: Params, solution: Any, places: Mapping[str, Place | None]) -> Parts:
         """What follows from the solution; `places` are those of the nodes that can be typed."""
@@ -110,7 +120,7 @@ class Column:
         yield from (part(f"control:{dial.handle}") for dial in sim.dials if only is None or dial.handle in only)
         yield from (part(f"control:{name}") for name in first)
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
-        yield self._actions(wanted)
+        yield self._actions([part(f"action:{a.name}", "div", "s3-act") for a in sim.actions if wanted(a)])
         if only is None:
             yield from (self._fold(title, part) for title in self._titles())
         yield f"</fieldset>{toolbar(sim.downloads)}"
@@ -126,15 +136,13 @@ class Column:
             inside.append(upload(files.endings))
         if self.sim.paste is not None and title == self.sim.paste.group:
             inside.append(pasted(self.sim.paste))
-        pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
+        pressed = "".join(part(f"action:{a.name}", "div", "s3-act") for a in self.sim.actions if a.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
         return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
 
-    def _actions(self, wanted: Callable[[Action], bool]) -> str:
-        shown = [action for action in self.sim.actions if wanted(action)]
-        inside = "".join(button(action, primary=not k) for k, action in enumerate(shown))
+    def _actions(self, shown: Iterable[str]) -> str:
         return (
-            f'<div class="s3-actions">{inside}'
+            f'<div class="s3-actions">{"".join(shown)}'
             '<button type="button" data-act="reset" title="Back to the state and the view of the link that you opened">'
             'Reset</button><button type="button" data-s3="home" title="Back to the sim’s own view of the scene">'
             "Home view</button></div>"

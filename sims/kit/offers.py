@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, Generic, TypeVar
 
 from sims.kit.params import Params
@@ -23,6 +23,10 @@ class Offers(Generic[P]):
     def form(self) -> tuple[Any, ...]:
         """All that labels, bounds and marks depend on."""
         return self.params.form()
+
+    def idle(self) -> Collection[str]:
+        """Names of the controls and buttons that mean nothing in this state, as its `form` says: they aren't shown."""
+        return ()
 
     def bounds(self, name: str) -> tuple[float, float]:
         """Least and greatest value that a control goes to."""
