@@ -10,7 +10,6 @@ from pydantic import model_validator
 from sims.kit.fields import Choice, Numbers, Slider, Switch, Vector
 from sims.kit.params import Params
 from sims.kit.refusals import refusal
-from sims.kit.spelling import spell
 from sims.quaternion.paths import Name
 
 Triple = tuple[float, float, float]
@@ -81,8 +80,7 @@ class QuaternionParams(Params):
     def _turns(self) -> Self:
         for name in ("axis", "start"):
             if math.hypot(*getattr(self, name)) < SHORTEST:
-                words = f"{name} must not be zero: zero has no direction, got {spell(getattr(self, name))}"
-                raise refusal([name], words)
+                raise refusal([name], f"the {name} must not be zero: zero has no direction")
         if len(self.history) % 4 or not all(_is_turn(*turn) for turn in self.turns):
             words = "history must be turns of four numbers: x, y, z of an axis that isn't zero, and an angle"
             raise refusal(["history"], words)

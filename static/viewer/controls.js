@@ -67,7 +67,6 @@ export class Controls {
   }
 
   enter(name, value) {
-    right(control(name));
     this.channel.send({ type: "enter", name, text: value });
   }
 
@@ -173,6 +172,15 @@ export class Controls {
     for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
     this.settle();
     return true;
+  }
+
+  // What was refused is past: each box shows what is so again, but for the one that was corrected.
+  forgive(name) {
+    for (const line of column.querySelectorAll(".s3-wrong:not([hidden])")) {
+      const boxes = [...line.parentElement.querySelectorAll("[data-box][aria-invalid]")];
+      right(line.parentElement);
+      for (const box of boxes) if (box.dataset.box !== name) this.fill(box, text(this.known[box.dataset.box]));
+    }
   }
 }
 

@@ -346,9 +346,7 @@ def test_a_zero_axis_from_a_control_is_refused_with_a_message_and_the_last_state
     before = rig.model.snapshot()
     rig.browser.move("axis", [0.0, 0.0, 0.0])
     rig.settle()
-    errors = rig.browser.refused
-    assert len(errors) == 1
-    assert "axis must not be zero" in errors[0]
+    assert rig.browser.refused == ["The axis must not be zero: zero has no direction."]
     assert rig.session.params == good
     assert rig.column.vector("axis") == [0.0, 2.0, 0.0]
     assert rig.model.snapshot().keys() == before.keys()
