@@ -85,7 +85,7 @@ WORDS = {"theme": ("light", "dark"), "controls": ("1", "0")}
 
 def controls(sim: Sim[Any, Any]) -> list[str]:
     """What `only` may name: parameters that have a control, and actions."""
-    return [*sim.params.visible, *(action.name for action in sim.actions)]
+    return [*sim.params.visible, *(name for action in sim.actions for name in action.names)]
 
 
 def is_view(text: str) -> bool:

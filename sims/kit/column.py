@@ -91,7 +91,7 @@ class Column:
             return f'<{tag} class="{kind}" data-part="{escape(name)}">{inside}</{tag}>'
 
         def wanted(action: Action) -> bool:
-            return not action.group if only is None else action.name in only
+            return not action.group if only is None else not {*action.names}.isdisjoint(only)
 
         sim = self.sim
         yield part("caption", "p", "s3-caption")
