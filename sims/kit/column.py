@@ -12,6 +12,7 @@ from html import escape
 from typing import Any, NamedTuple
 
 from sims.kit import controls, pane, readout
+from sims.kit.fields import Opened
 from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.sim import Action, Library, Sim, Typed
@@ -120,7 +121,14 @@ class Column:
             inside.append(upload(files.endings))
         pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
-        return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+        return f'<details class="s3-fold"{self._opens(title)}><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+
+    def _opens(self, title: str) -> str:
+        """What a fold's opening and closing choose, where that is part of the state."""
+        for name, kind in self.sim.params.kinds.items():
+            if isinstance(kind, Opened) and (word := next((w for w, t in kind.folds.items() if t == title), "")):
+                return f' data-fold="{escape(name)}" data-open="{escape(word)}" data-closed="{escape(kind.closed)}"'
+        return ""
 
     def _actions(self, wanted: Callable[[Action], bool]) -> str:
         shown = [action for action in self.sim.actions if wanted(action)]

@@ -31,6 +31,8 @@ class Pane:
     note: str = ""
     wide: bool = False
     """It takes the whole width where pictures stand side by side."""
+    large: bool = False
+    """It may be as high as half of the column: for the one picture that all is about."""
 
 
 class Picture:
@@ -192,7 +194,7 @@ class Picture:
         other._points, other._handles = [*self._points], [*self._handles]
         return other
 
-    def pane(self, note: str = "", *, wide: bool = False) -> Pane:
+    def pane(self, note: str = "", *, wide: bool = False, large: bool = False) -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
@@ -206,7 +208,7 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}{''.join(self._reachable())}</svg>"
         )
-        return Pane(self.name, self.title, svg, note, wide)
+        return Pane(self.name, self.title, svg, note, wide, large)
 
     def _reachable(self) -> list[str]:
         """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
@@ -233,7 +235,8 @@ def _linked(link: str) -> str:
 
 def figure(pane: Pane) -> str:
     """Where a pane goes."""
-    return f'<figure class="s3-pane{" s3-wide" if pane.wide else ""}" data-part="pane:{escape(pane.name)}"></figure>'
+    size = " s3-wide" * pane.wide + " s3-large" * pane.large
+    return f'<figure class="s3-pane{size}" data-part="pane:{escape(pane.name)}"></figure>'
 
 
 def still(pane: Pane) -> str:
