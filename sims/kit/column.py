@@ -121,7 +121,8 @@ class Column:
             inside.append(upload(files.endings))
         pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
-        return f'<details class="s3-fold"{self._opens(title)}><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+        opens = self._opens(title)
+        return f'<details class="s3-fold"{opens}><summary>{escape(title)}</summary>{"".join(inside)}</details>'
 
     def _opens(self, title: str) -> str:
         """What a fold's opening and closing choose, where that is part of the state."""
