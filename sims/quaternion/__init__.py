@@ -46,8 +46,7 @@ SIM = Sim(
             "apply", "Make this turn", "Turn by θ about n: where that leads is the start of the next turn, q ⊗ start",
             actions.apply, aliases=("compose",),
         ),
-        Action("both", "Play both orders", "One object turns by A first, the other by B", actions.both, ORDER),
-        Action("play", "Play all three", "Go from start to target, t from 0 to 1", actions.play, PATH),
+        Action("play", "Play", "See what is shown happen, from the start on; nothing comes of it", actions.play),
         Action("undo", "Undo last turn", "Take back the last turn made", actions.undo, COMPOSED),
     ),
     handles={

@@ -66,17 +66,26 @@ def _turned(start: Array, axis: Any, angle: float) -> Array:
 
 
 def play(p: QuaternionParams) -> Iterator[Step]:
-    """The objects go from start to target, each by its own way."""
-    yield Step({"t": 0.0, "show": "path"}, 0.0)
+    """What is shown happens: the turn, two turns in both orders, or three ways from start to target."""
+    yield from {"order": _both, "path": _ways}.get(p.topic, _turn)(p)
+
+
+def _turn(p: QuaternionParams) -> Iterator[Step]:
+    yield Step({"angle": 0.0, "t": 1.0}, 0.0)
+    yield Step({"angle": 0.0}, 0.25)
+    yield Step({"angle": p.angle}, SECONDS, words="The object turns about n; on its dial q goes half as far.")
+
+
+def _ways(p: QuaternionParams) -> Iterator[Step]:
+    yield Step({"t": 0.0}, 0.0)
     yield Step({"t": 0.0}, 0.25)
     yield Step(
         {"t": 1.0}, 2.0 * SECONDS, even=True, words="All three take the same time: watch who is ahead on the way."
     )
 
 
-def both(p: QuaternionParams) -> Iterator[Step]:
-    """Two objects make the turns A and B, one of them A first, the other B first."""
-    yield Step({"t": 0.0, "show": "order"}, 0.0)
+def _both(p: QuaternionParams) -> Iterator[Step]:
+    yield Step({"t": 0.0}, 0.0)
     yield Step({"t": 0.0}, 0.25, words="Both begin alike.")
     yield Step({"t": 0.5}, SECONDS, words="The left one turns by A first, the right one by B.")
     yield Step({"t": 1.0}, SECONDS, words="Then the other turn: the left one by B, the right one by A.")
@@ -86,9 +95,9 @@ def apply(p: QuaternionParams) -> Iterator[Step]:
     """The object makes the turn; where it comes to is the start of the next one. No angle, no turn."""
     if p.angle == 0.0:
         return
-    show = {"show": "turn"} if p.topic in ("order", "path") else {}
-    yield Step({**show, **AFTER}, 0.0)
-    yield Step({"angle": p.angle}, SECONDS, words="The object turns about n; on the dial q goes half as far.")
+    if p.topic in ("order", "path"):
+        yield Step({"show": "turn"}, 0.0)
+    yield from _turn(p)
     yield Step({**_made(p), **AFTER}, 0.0)
 
 

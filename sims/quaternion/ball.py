@@ -97,10 +97,10 @@ def _sphere() -> Picture:
         x, y = pixel(1.12 * tip)
         picture.text((x, y + 6), axis.upper(), axis, anchor="middle", size=18)
     picture.dot(MIDDLE, "ghost", 4)
-    picture.text((MIDDLE[0] - 12, MIDDLE[1] + 22), "no turn", "ghost", anchor="end", size=17)
-    rim = MIDDLE[0] - 0.72 * RADIUS, MIDDLE[1] + 0.72 * RADIUS
-    picture.text((rim[0] - 6, rim[1] + 18), "half turns", "ghost", anchor="end", size=17)
-    picture.text((EDGE, HEIGHT - EDGE), "outside: over half a turn", "ghost", size=17)
+    picture.text((MIDDLE[0] - 12, MIDDLE[1] + 22), "no turn", "ghost", anchor="end", size=19)
+    rim = MIDDLE[0] + 0.72 * RADIUS, MIDDLE[1] + 0.72 * RADIUS
+    picture.text((rim[0] + 6, rim[1] + 18), "half turns", "ghost", size=19)
+    picture.text((EDGE, HEIGHT - EDGE), "outside: over half a turn", "ghost", size=19)
     return picture
 
 

@@ -28,11 +28,11 @@ def caption(p: QuaternionParams, s: QuaternionSolution) -> str:
         case "point":
             return "Drag p, or move the angle: q p q* leads p to p′, on a circle about the axis."
         case "order":
-            return "Play both orders: the same two turns, but the object ends elsewhere."
+            return "Play: the same two turns, A and B, but in the other order the object ends elsewhere."
         case "path" if p.long_way:
             return "q and −q end in one orientation, but the way to −q leads the other way round."
         case "path":
-            return "Play: marks are at equal times. SLERP’s are equally far apart, NLERP’s and Euler’s aren’t."
+            return "Drag t, or play. At equal times SLERP’s marks are equally far apart; NLERP’s and Euler’s aren’t."
     if p.angle > WHOLE:
         return "Past a whole turn q is the −q of before. Go on to 720°: there it is q again."
     if p.angle == 0.0 and p.turns:
@@ -62,7 +62,7 @@ def readouts(p: QuaternionParams, s: QuaternionSolution) -> Iterator[Readout]:
 
 
 def _key(p: QuaternionParams, s: QuaternionSolution) -> Iterator[Readout]:
-    if abs(s.length - 1.0) > UNIT:
+    if abs(s.length - 1.0) > UNIT and p.topic not in ("order", "path"):
         given, n = (", ".join(figure(v, 2) for v in axis) for axis in (p.axis, s.n.tolist()))
         yield Note(f"Your axis ({given}) has length {figure(s.length, 2)}. n = ({n}) has length 1.")
     name = Q if s.orders is None else A
