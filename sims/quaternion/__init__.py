@@ -80,7 +80,7 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="axis angle start t interpolation long_way show_euler point",
+    parameters="axis angle start t interpolation long_way show_euler point show axis_b angle_b",
     solution="q q_total R_total euler rotated_point interpolated sandwich",
     link=(
         "axis=1,1,0&angle=120&start=0.5,0.5,0.5,0.5&t=0.25&interpolation=nlerp&long_way=1&show_euler=1"
