@@ -173,7 +173,7 @@ class Session:
         if name == "reset":
             self._set(self.initial)
             return
-        action = next((a for a in self.sim.actions if a.name == name), None)
+        action = next((a for a in self.sim.actions if name in a.names), None)
         if action is None:
             raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
         if isgeneratorfunction(action.run):  # a motion, whose steps are found as it goes

@@ -13,6 +13,7 @@ from html import escape
 from typing import Any, NamedTuple
 
 from sims.kit import controls, pane, readout
+from sims.kit.fields import Opened
 from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.paste import Paste
@@ -106,7 +107,7 @@ class Column:
             return f'<{tag} class="{kind}" data-part="{escape(name)}">{inside}</{tag}>'
 
         def wanted(action: Action) -> bool:
-            return not action.group if only is None else action.name in only
+            return not action.group if only is None else not {*action.names}.isdisjoint(only)
 
         sim = self.sim
         yield part("caption", "p", "s3-caption")
@@ -138,7 +139,15 @@ class Column:
             inside.append(pasted(self.sim.paste))
         pressed = "".join(part(f"action:{a.name}", "div", "s3-act") for a in self.sim.actions if a.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
-        return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+        opens = self._opens(title)
+        return f'<details class="s3-fold"{opens}><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+
+    def _opens(self, title: str) -> str:
+        """What a fold's opening and closing choose, where that is part of the state."""
+        for name, kind in self.sim.params.kinds.items():
+            if isinstance(kind, Opened) and (word := next((w for w, t in kind.folds.items() if t == title), "")):
+                return f' data-fold="{escape(name)}" data-open="{escape(word)}" data-closed="{escape(kind.closed)}"'
+        return ""
 
     def _actions(self, shown: Iterable[str]) -> str:
         return (

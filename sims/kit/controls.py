@@ -82,6 +82,8 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
                 offers.params.regions().get(name, ()),
             )  # fmt: skip
             return control(name, label, inside, about, kind="s3-line", target=f"s-{name}")
+        case fields.Opened():
+            return ""  # the folds are its control
         case fields.NumberBox():
             inside = box(name, label, value, kind.unit, offers.increment(name), steps=True)
             return control(name, label, inside, about, kind="s3-one", target=f"b-{name}")

@@ -66,6 +66,13 @@ class Action:
     run: Callable[..., Mapping[str, Any] | Iterator[Step]]
     group: str = ""
     """Fold in which it stands, closed at first; of those in none, the first one is what people do first."""
+    aliases: tuple[str, ...] = ()
+    """Names that it had before: course pages may know it by them."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its name, and those that it had before."""
+        return self.name, *self.aliases
 
 
 @dataclass(frozen=True)

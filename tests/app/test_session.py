@@ -23,6 +23,7 @@ from app.rooms.keys import new_key, room_of
 from app.rooms.registry import Full, Sessions
 from app.rooms.session import Session
 from app.rooms.solver import workers
+from app.routes.links import controls
 from app.sockets.commands import Commands
 from sims import by_slug
 from sims.kit.fields import NumberBox, OptionalNumber, Slider, Vector
@@ -318,6 +319,16 @@ def test_a_button_leads_to_the_next_state() -> None:
         room = Room()
         room.session.act("paint")
         assert room.session.params == ToyParams(kind="blue")
+
+    run(test)
+
+
+def test_a_button_is_known_by_the_name_that_it_had_before() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("dye")
+        assert room.session.params == ToyParams(kind="blue")
+        assert "dye" in controls(room.session.sim), "links that show this button alone"
 
     run(test)
 

@@ -93,6 +93,25 @@ def test_what_cannot_be_taken_stays_with_the_reason(column: Open) -> None:
     held(learner, yaw=13)
 
 
+def test_what_was_refused_goes_with_the_next_good_input(column: Open) -> None:
+    learner = column("euler-angles/embed?yaw=12")
+    wrong = learner.frame.locator('[data-control="yaw"] .s3-wrong')
+    inputs: list[Callable[[], None]] = [
+        lambda: learner.press_keys("roll", "ArrowRight"),
+        lambda: learner.type("pitch", "21"),
+        lambda: learner.choose("order", "xyz"),
+        lambda: learner.press("Reset"),
+    ]
+    for go_on in inputs:
+        learner.type("yaw", "400")
+        wrong.wait_for()
+        assert shown(learner, "yaw") == "400"
+        go_on()
+        wrong.wait_for(state="hidden")
+        assert learner.control("textbox", "yaw").get_attribute("aria-invalid") is None
+        learner.until(lambda: shown(learner, "yaw") == "12")
+
+
 def test_three_numbers_are_pasted_at_once(column: Open) -> None:
     learner = column("camera/embed")
     field = learner.control("textbox", "position.0")
