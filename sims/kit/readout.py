@@ -154,6 +154,22 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Lamps:
+    """Words with a row of lamps, each of which glows by so much, 0 (out) to 1."""
+
+    text: str
+    glow: Sequence[float]
+
+    def html(self) -> str:
+        lamps = "".join(
+            f'<i class="s3-lamp" style="--glow:{each:.3f}"></i>' if each else '<i class="s3-lamp s3-out">×</i>'
+            for each in self.glow
+        )
+        lit = f"{sum(each > 0 for each in self.glow)} of {len(self.glow)} lamps lit"
+        return f'<p class="s3-lamps"><span role="img" aria-label="{lit}">{lamps}</span> <b>{escape(self.text)}</b></p>'
+
+
+@dataclass(frozen=True)
 class Fold:
     """What follows stands in the fold of that title, closed at first; what stands before any is always seen."""
 
@@ -163,7 +179,7 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Note | Fold
+Readout = Formula | Table | Note | Lamps | Fold
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:
