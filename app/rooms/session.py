@@ -192,6 +192,11 @@ class Session:
         self.motion.stop()
         self._set(self.params.moved(changes))
 
+    def take(self, found: Any) -> None:
+        """Take what was found in a text of somebody's own. Raises ValueError in words, or pydantic's."""
+        assert self.sim.paste is not None
+        self.change(self.sim.paste.changes(self.params, found), live=False)
+
     def forget(self, known_as: str) -> None:
         """Have the library forget an uploaded file."""
         if self.library is not None:
