@@ -6,7 +6,7 @@ While a motion is compared with a ghost, the ellipsoid is out of the way.
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -55,7 +55,10 @@ def set_size_of_pitch(p: GimbalParams, values: Place) -> Mapping[str, Any]:
     return {"pitch": math.copysign(min(max(values[0], 0.0), 180.0), p.pitch)}
 
 
-HANDLES = {**{ring.grip: partial(turn_ring, ring) for ring in RINGS}, "effort": set_size_of_pitch}
+HANDLES: dict[str, Callable[..., Mapping[str, Any]]] = {
+    **{ring.grip: partial(turn_ring, ring) for ring in RINGS},
+    "effort": set_size_of_pitch,
+}
 
 
 def go_to_lock(p: GimbalParams) -> Iterator[Step]:

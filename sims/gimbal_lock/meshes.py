@@ -11,7 +11,7 @@ import trimesh
 
 from geometry.arrays import Array
 from sims.gimbal_lock.rings import INNER, MIDDLE, OUTER, Ring
-from sims.kit.scene.bodies import joined
+from sims.kit.scene.bodies import joined, moved
 
 Profile = Sequence[tuple[float, float]]
 FULL = (0.0, 2.0 * math.pi)
@@ -115,8 +115,7 @@ def stand() -> trimesh.Trimesh:
 
 def base(length: float, width: float) -> trimesh.Trimesh:
     """A plate on the floor, long in x."""
-    plate: trimesh.Trimesh = trimesh.creation.box((length, width, 0.06))
-    return plate.apply_translation((0.0, 0.0, 0.03))
+    return moved(trimesh.creation.box((length, width, 0.06)), (0.0, 0.0, 0.03))
 
 
 def mount(scale: float) -> trimesh.Trimesh:

@@ -62,7 +62,8 @@ def on_circle(at: Vector, axis: Vector, eye: Vector, pulled: Vector) -> Place:
     ray /= np.sqrt(ray @ ray)
 
     def places(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        return middle + np.outer(np.cos(angles), spoke) + np.outer(np.sin(angles), np.cross(normal, spoke))
+        turned = np.stack([np.cos(angles), np.sin(angles)], axis=1) @ [spoke, np.cross(normal, spoke)]
+        return np.asarray(middle + turned)
 
     across = places(turns) - eye
     gaps = (across * across).sum(axis=1) - (across @ ray) ** 2
