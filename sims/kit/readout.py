@@ -170,6 +170,19 @@ class Lamps:
 
 
 @dataclass(frozen=True)
+class Copied:
+    """A text to be copied, as others write what `note` names."""
+
+    note: str
+    text: str
+
+    def html(self) -> str:
+        text, note = escape(self.text), escape(self.note)
+        button = f'<button type="button" data-s3="copy" value="{text}" aria-label="Copy: {note}">Copy</button>'
+        return f'<div class="s3-copy"><span>{note}</span><code>{text}</code>{button}</div>'
+
+
+@dataclass(frozen=True)
 class Fold:
     """What follows stands in the fold of that title, closed at first; what stands before any is always seen."""
 
@@ -179,7 +192,7 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Note | Lamps | Fold
+Readout = Formula | Table | Note | Lamps | Copied | Fold
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:

@@ -11,6 +11,7 @@ export class Toolbar {
       picture: savePicture,
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
+      copy: (button) => this.copy(button.value, "Copied.", "Text to copy", "Text"),
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.goHome(),
       "give-up": () => files.giveUp(),
@@ -27,17 +28,20 @@ export class Toolbar {
     }, true);
   }
 
-  async share() {
-    const link = this.address.shared;
+  share() {
+    this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state", "Link");
+  }
+
+  async copy(text, done, title, label) {
     try {
       // Frames of other sites may not; asking all the same would leave an error in the console.
       if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
-      await navigator.clipboard.writeText(link);
-      this.words.notify("Link copied. It opens this sim in exactly this state and view.");
+      await navigator.clipboard.writeText(text);
+      this.words.notify(done);
     } catch {
-      dialog("Link to this state", '<p><input class="s3-link" readonly aria-label="Link" value=""></p>');
+      dialog(title, `<p><input class="s3-link" readonly aria-label="${label}" value=""></p>`);
       const field = document.querySelector(".s3-link");
-      field.value = link;
+      field.value = text;
       field.select();
     }
   }
