@@ -103,9 +103,8 @@ class Column:
         if sim.panes is not None:
             yield part(PANES, kind="s3-panes")
         yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
-        first = (
-            self._names("", params) if only is None else [name for name in dict.fromkeys(only) if name in sim.params.visible]
-        )
+        wished = self._names("", params) if only is None else dict.fromkeys(only)
+        first = [name for name in wished if name in sim.params.visible]
         yield from (part(f"control:{name}") for name in first)
         yield f'<p hidden="" data-part="{ARRANGED}">{" ".join(first)}</p>'
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
