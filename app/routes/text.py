@@ -81,7 +81,8 @@ def _fields(sim: Sim[Any, Any], params: Params, library: tuple[Library, ...]) ->
     offers = sim.offers(params, None, *library)
     for name in params.arranged:
         kind, value = params.kinds[name], getattr(params, name)
-        yield Field(name, offers.label(name), offers.about(name), _shown(value), unit_of(kind), _options(kind, name, offers))
+        words = offers.label(name), offers.about(name)
+        yield Field(name, *words, _shown(value), unit_of(kind), _options(kind, name, offers))
 
 
 def _shown(value: Any) -> str:

@@ -197,7 +197,7 @@ def _unit(text: str) -> str | None:
 
 def _values(text: str) -> list[float]:
     """The numbers of a text, without those that are parts of names, such as float32."""
-    return [*_floats(re.sub(r"(?<![\w.])[a-z_]\w*", " ", text))]
+    return [*_floats(re.sub(r"(?<![\w.])[a-z_][\w.]*", " ", text))]
 
 
 def _floats(text: str) -> Iterator[float]:
