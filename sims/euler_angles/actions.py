@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from sims.euler_angles.solution import arc_frames, solve, triple_of
 from sims.kit.sim import Step
 from sims.kit.types import Place
 
+Handle = Callable[[EulerParams, Place], Mapping[str, Any]]
 LEAST = 1e-6
 """Metres within which a place doesn't say a direction."""
 ARCS = ("/held_first", "/held_second", "/held_third")
@@ -39,24 +39,32 @@ def turn_words(p: EulerParams, k: int) -> str:
     return f"{PLACES[k]} turn: {p.turns[k].said}, about {whose} {p.turns[k].axis}."
 
 
-def pull_arc(k: int, p: EulerParams, place: Place) -> Mapping[str, Any]:
-    """The end of an arc was led to a place in the world: the turn goes as far, by less than half a turn at once."""
-    along, across, _ = arc_frames(p)[k].T @ place
-    if math.hypot(along, across) < LEAST:
-        return {}
-    name, now = p.names[k], p.angles[k]
-    angle = now + math.remainder(math.degrees(math.atan2(across, along)) - now, 360.0)
-    low, high = p.bounds(name)
-    return {name: math.remainder(angle, 360.0) if high - low == 360.0 else min(max(angle, low), high)}
+def arc(k: int) -> Handle:
+    """The end of the k-th arc was led to a place in the world: the turn goes as far, by less than half a turn at once."""
+
+    def pull(p: EulerParams, place: Place) -> Mapping[str, Any]:
+        along, across, _ = arc_frames(p)[k].T @ place
+        if math.hypot(along, across) < LEAST:
+            return {}
+        name, now = p.names[k], p.angles[k]
+        angle = now + math.remainder(math.degrees(math.atan2(across, along)) - now, 360.0)
+        low, high = p.bounds(name)
+        return {name: math.remainder(angle, 360.0) if high - low == 360.0 else min(max(angle, low), high)}
+
+    return pull
 
 
-def point_body(column: int, p: EulerParams, place: Place) -> Mapping[str, Any]:
+def body(column: int) -> Handle:
     """Nose or wing was pulled towards a place in the world: the shortest turn brings it there."""
-    R, aim = solve(p).R, np.asarray(place)
-    length = math.sqrt(aim @ aim)
-    if length < LEAST:
-        return {}
-    return triple_of(p, _shortest(R[:, column], aim / length) @ R)
+
+    def point(p: EulerParams, place: Place) -> Mapping[str, Any]:
+        R, aim = solve(p).R, np.asarray(place)
+        length = math.sqrt(aim @ aim)
+        if length < LEAST:
+            return {}
+        return triple_of(p, _shortest(R[:, column], aim / length) @ R)
+
+    return point
 
 
 def _shortest(start: Array, end: Array) -> Array:
@@ -66,9 +74,9 @@ def _shortest(start: Array, end: Array) -> Array:
     return np.eye(3) if sine < LEAST else axis_angle_to_matrix(axis / sine, math.atan2(sine, float(start @ end)))
 
 
-HANDLES: dict[str, Callable[..., Mapping[str, Any]]] = {
-    **{name: partial(pull_arc, k) for k, name in enumerate(ARCS)},
-    **{name: partial(point_body, column) for name, column in BODY.items()},
+HANDLES: Mapping[str, Handle] = {
+    **{name: arc(k) for k, name in enumerate(ARCS)},
+    **{name: body(column) for name, column in BODY.items()},
 }
 
 

@@ -152,7 +152,7 @@ def _matrix(M: Array, what: str) -> Found:
 
 
 def _quaternion(q: Sequence[float], what: str) -> Found:
-    """Of w, x, y, z."""
+    """What w, x, y, z mean."""
     if not any(q):
         raise ValueError("A quaternion of four zeros is no rotation.")
     return _found(f"a quaternion, {what}", quaternion.to_matrix(quaternion.normalize(q)))
@@ -165,7 +165,7 @@ def _axis_angle(axis: Sequence[float], angle: float, what: str) -> Found:
 
 
 def _euler(angles: Sequence[float], order: str, frame: str, whose: str) -> Found:
-    """Of angles in radians, in the order as written."""
+    """What three angles in radians mean, in the order as written."""
     about = "turned" if frame == "intrinsic" else "fixed"
     found = _found(
         f"Euler angles {order.upper()} about {about} axes{f', {whose}' * bool(whose)}",

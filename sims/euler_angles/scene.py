@@ -19,6 +19,8 @@ from sims.kit.types import Place, Vector
 TIPS = (1.0, 0.98)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
+ANCHORS = dict(zip(RADII, ("top-center", "center-center", "center-left"), strict=True))
+"""The first label hangs lower, clear of the next one where the two arcs meet; the last stands beside its short arc."""
 
 
 class EulerScene:
@@ -94,8 +96,7 @@ class Arc:
         self.end = stage.lines(f"{name}/end", axis, [(0, 0, 0), (radius, 0, 0)], width=1.5)
         self.axis = stage.lines(f"{name}/axis", axis, [(0, 0, -1.7), (0, 0, 1.7)], width=5.0)
         self.axis.show(False)
-        # the outermost label hangs lower, clear of the next one where the two arcs meet
-        self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
+        self.label = stage.label(f"{name}/label", "", anchor=ANCHORS[radius])
         self.current = False
         self.locks = {lock: stage.label(f"{name}/words{lock:.0f}", "") for lock in locks}
         if locks:

@@ -16,7 +16,7 @@ from sims.kit.types import Quaternion
 
 # In which direction each turn is seen: the nose for turns about z and y, the left wing for turns about x.
 SEEN = {"z": "x", "y": "x", "x": "y"}
-RADII = (1.58, 1.28, 1.43)
+RADII = (1.62, 1.38, 1.5)
 """Metres of the three turns' arcs: the innermost is outside the wings."""
 SAME = 0.005
 """Degrees within which two angles are one."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterator, Mapping
-from functools import partial
 from typing import Any
 
 from geometry import euler
@@ -18,6 +17,7 @@ from sims.kit.sim import Step
 from sims.kit.types import Place, Vector
 
 Angles = dict[str, float]
+Handle = Callable[[GimbalParams, Place], Mapping[str, Any]]
 SWING, TRY = 40.0, 30.0
 """Degrees of the turns that are shown."""
 READ = 1.8
@@ -27,14 +27,18 @@ ON_AXIS = 1e-6
 LINED_UP = "At lock, the outer and the inner ring turn about one and the same line."
 
 
-def turn_ring(ring: Ring, p: GimbalParams, place: Place) -> Mapping[str, Any]:
+def turning(ring: Ring) -> Handle:
     """The ring turns about its axis until its grip points to a place in the world."""
-    along, across = _about(ring, _holder(ring, p).T @ place)
-    if math.hypot(along, across) < ON_AXIS:
-        return {}
     rest, rest_across = _about(ring, ring.held)
-    turned = math.degrees(math.atan2(across, along) - math.atan2(rest_across, rest))
-    return {ring.angle: _wrapped(turned)}
+
+    def turn(p: GimbalParams, place: Place) -> Mapping[str, Any]:
+        along, across = _about(ring, _holder(ring, p).T @ place)
+        if math.hypot(along, across) < ON_AXIS:
+            return {}
+        turned = math.degrees(math.atan2(across, along) - math.atan2(rest_across, rest))
+        return {ring.angle: _wrapped(turned)}
+
+    return turn
 
 
 def _holder(ring: Ring, p: GimbalParams) -> Array:
@@ -55,10 +59,7 @@ def set_size_of_pitch(p: GimbalParams, values: Place) -> Mapping[str, Any]:
     return {"pitch": math.copysign(min(max(values[0], 0.0), 180.0), p.pitch)}
 
 
-HANDLES: dict[str, Callable[..., Mapping[str, Any]]] = {
-    **{ring.grip: partial(turn_ring, ring) for ring in RINGS},
-    "effort": set_size_of_pitch,
-}
+HANDLES: Mapping[str, Handle] = {**{ring.grip: turning(ring) for ring in RINGS}, "effort": set_size_of_pitch}
 
 
 def go_to_lock(p: GimbalParams) -> Iterator[Step]:

@@ -30,10 +30,10 @@ class Paste(Generic[P]):
     words for whoever pasted."""
     changes: Callable[[P, Any], Mapping[str, Any]]
     """What of a state changes by what was read, with lists where `read` gave tuples. Raises ValueError in words too."""
-    says: Callable[[Any], str] = lambda _: "Taken."
-    """What was understood, in a sentence."""
     endings: tuple[str, ...] = ()
     """How files end that such a text may come from."""
+    says: Callable[[Any], str] = lambda _: "Taken."
+    """What was understood, in a sentence."""
 
     def found(self, text: str) -> Any:
         """What `read` makes of a text, in a child. Raises ValueError in words."""

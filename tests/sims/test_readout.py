@@ -9,7 +9,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, math, mathml, quantity, render, row, symbol
+from sims.kit.readout import (
+    Copied,
+    Formula,
+    Lamps,
+    Note,
+    Readout,
+    Table,
+    figure,
+    math,
+    mathml,
+    quantity,
+    render,
+    row,
+    symbol,
+)
 from tests.sims.markup import bad_numbers, mistakes, words, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -160,3 +174,21 @@ def test_rows_after_those_that_can_be_selected_may_light_up_and_are_no_buttons()
     assert [len(list(e.iter("button"))) for e in rows] == [1, 0, 0]
     assert [e.get("class") for e in rows] == ["s3-selected", None, None]
     assert "True &amp; fair" in table.html()
+
+
+def test_lamps_say_how_many_are_lit_and_mark_those_that_are_out() -> None:
+    html = Lamps("2 ways & more", (1.0, 0.25, 0.0)).html()
+    assert not mistakes(html)
+    assert 'aria-label="2 of 3 lamps lit"' in html
+    assert html.count("--glow:0.250") == 1
+    assert html.count("s3-out") == html.count("×") == 1
+    assert words(html).endswith("2 ways & more")
+
+
+def test_a_text_to_copy_is_in_its_button_unchanged() -> None:
+    text = 'from_euler("ZYX", [1, -2, 3]) <&>'
+    html = Copied("Euler & co", text).html()
+    assert not mistakes(html)
+    button = next(xml(html).iter("button"))
+    assert button.get("value") == next(xml(html).iter("code")).text == text
+    assert button.get("aria-label") == "Copy: Euler & co"

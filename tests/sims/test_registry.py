@@ -246,6 +246,20 @@ def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
 
 
 @each_state
+def test_controls_are_arranged_without_loss(sim: AnySim, name: str, params: Params) -> None:
+    assert sorted(params.arranged) == sorted(params.visible)
+    assert {params.about(each)[0].isupper() and not params.about(each).endswith(".") for each in params.visible} == {
+        True
+    }
+    page = xml(Column(sim).html(params, None))
+    stand = [e.get("data-part", "").removeprefix("control:") for e in page.iter() if e.get("data-part")]
+    assert (
+        Column(sim).of(params, None).parts["arranged"].split()
+        == [n for n in stand if n in params.visible][: len([n for n in params.visible if not params.kinds[n].group])]
+    )
+
+
+@each_state
 def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) -> None:
     caption = sim.caption(params, sim.solve(params))
     assert caption.endswith(".")
