@@ -21,6 +21,8 @@ from sims.kit.sim import Action, Dial, Library, Sim, Typed
 from sims.kit.types import Place
 
 PANES = "panes"
+ARRANGED = "arranged"
+"""The part that tells the page in which order the controls stand: their names, which nobody sees."""
 Parts = dict[str, str]
 
 
@@ -44,6 +46,7 @@ class Column:
         """What a state shows. Without a solution yet: the controls alone."""
         offers = self.sim.offers(params, solution, *self._library)
         parts, values = dict(self._controls_of(offers)), controls.values(offers)
+        parts[ARRANGED] = " ".join(self._names("", params))
         if solution is not None:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
@@ -59,7 +62,7 @@ class Column:
         if solution is not None:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
-        return "".join(self._page(parts, only))
+        return "".join(self._page(parts, params, only))
 
     def _controls_of(self, offers: Offers[Any]) -> Parts:
         """The controls without what they show, made anew where what they offer may have changed."""
@@ -100,7 +103,7 @@ class Column:
             found |= {f"pane:{each.name}": pane.content(each) for each in panes}
         return found
 
-    def _page(self, parts: Parts, only: Collection[str] | None) -> Iterator[str]:
+    def _page(self, parts: Parts, params: Params, only: Collection[str] | None) -> Iterator[str]:
         def part(name: str, tag: str = "div", kind: str = "") -> str:
             # the frames of pictures are parts within a part
             inside = re.sub(r'data-part="(pane:[^"]*)">', lambda frame: frame[0] + parts[frame[1]], parts.get(name, ""))
@@ -115,11 +118,11 @@ class Column:
         if sim.panes is not None:
             yield part(PANES, kind="s3-panes")
         yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
-        first = (
-            self._names("") if only is None else [name for name in dict.fromkeys(only) if name in sim.params.visible]
-        )
         yield from (part(f"control:{dial.handle}") for dial in sim.dials if only is None or dial.handle in only)
+        wished = self._names("", params) if only is None else dict.fromkeys(only)
+        first = [name for name in wished if name in sim.params.visible]
         yield from (part(f"control:{name}") for name in first)
+        yield f'<p hidden="" data-part="{ARRANGED}">{" ".join(first)}</p>'
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
         yield self._actions([part(f"action:{a.name}", "div", "s3-act") for a in sim.actions if wanted(a)])
         if only is None:
@@ -157,8 +160,9 @@ class Column:
             "Home view</button></div>"
         )
 
-    def _names(self, group: str) -> list[str]:
-        return [name for name in self.sim.params.visible if self.sim.params.kinds[name].group == group]
+    def _names(self, group: str, params: Params | None = None) -> list[str]:
+        names = self.sim.params.visible if params is None else params.arranged
+        return [name for name in names if self.sim.params.kinds[name].group == group]
 
     def _titles(self) -> list[str]:
         groups = [self.sim.params.kinds[name].group for name in self.sim.params.visible]

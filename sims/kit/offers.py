@@ -44,6 +44,10 @@ class Offers(Generic[P]):
         """Words beside a control."""
         return self.params.label(name)
 
+    def about(self, name: str) -> str:
+        """What a control is for."""
+        return self.params.about(name)
+
     def entries(self, name: str) -> Any:
         """The entries of a list that have a control each."""
         return getattr(self.params, name)

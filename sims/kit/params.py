@@ -61,6 +61,15 @@ class Params(BaseModel):
         """Words beside the control of a field in this state."""
         return self.kinds[name].label
 
+    def about(self, name: str) -> str:
+        """What the control of a field is for in this state, in a sentence without its full stop."""
+        return type(self).model_fields[name].description or ""
+
+    @property
+    def arranged(self) -> tuple[str, ...]:
+        """Those that have a control, in the order in which the controls stand in this state."""
+        return self.visible
+
     def entry_label(self, name: str, k: int) -> str:
         """Words beside the control of the k-th entry, from 0, of a list."""
         kind = self.kinds[name]

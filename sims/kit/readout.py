@@ -138,6 +138,14 @@ def symbol(name: str, sub: str = "") -> str:
     return f"<msub>{base}<mi>{escape(sub)}</mi></msub>" if sub else base
 
 
+def copy_button(text: str, what: str) -> str:
+    """Copies a text, which is as other programs write `what`."""
+    return (
+        f'<button type="button" class="s3-copy" data-s3="copy" value="{escape(text)}"'
+        f' aria-label="Copy: {escape(what)}">Copy</button>'
+    )
+
+
 @dataclass(frozen=True)
 class Formula:
     """`name = value`, where the value is MathML; `note` says in words what it is."""
@@ -156,12 +164,7 @@ class Formula:
         left = f"{self.name}<mo>=</mo>" if self.name else ""
         link = f' data-link="{escape(self.link)}"' if self.link else ""
         name = escape(self.note)
-        button = (
-            f'<button type="button" class="s3-copy" data-s3="copy" value="{escape(self.copy)}"'
-            f' aria-label="Copy: {name}">Copy</button>'
-            if self.copy
-            else ""
-        )
+        button = copy_button(self.copy, self.note) if self.copy else ""
         return f'<div class="s3-formula"{link}><span>{name}</span>{button}{math(left, self.value, unit)}</div>'
 
 
@@ -238,6 +241,34 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Lamps:
+    """Words with a row of lamps, each of which glows by so much, 0 (out) to 1."""
+
+    text: str
+    glow: Sequence[float]
+
+    def html(self) -> str:
+        lamps = "".join(
+            f'<i class="s3-lamp" style="--glow:{each:.3f}"></i>' if each else '<i class="s3-lamp s3-out">×</i>'
+            for each in self.glow
+        )
+        lit = f"{sum(each > 0 for each in self.glow)} of {len(self.glow)} lamps lit"
+        return f'<p class="s3-lamps"><span role="img" aria-label="{lit}">{lamps}</span> <b>{escape(self.text)}</b></p>'
+
+
+@dataclass(frozen=True)
+class Copied:
+    """A text to be copied, as others write what `note` names."""
+
+    note: str
+    text: str
+
+    def html(self) -> str:
+        button = copy_button(self.text, self.note)
+        return f'<div class="s3-copied"><span>{escape(self.note)}</span><code>{escape(self.text)}</code>{button}</div>'
+
+
+@dataclass(frozen=True)
 class Fold:
     """What follows stands in the fold of that title, closed at first; what stands before any is always seen."""
 
@@ -247,7 +278,7 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Chain | Note | Fold
+Readout = Formula | Table | Chain | Note | Lamps | Copied | Fold
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:

@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 from sims.kit.readout import (
     Chain,
+    Copied,
     Formula,
+    Lamps,
     Link,
     Note,
     Readout,
@@ -213,3 +215,21 @@ def test_a_chain_has_each_step_with_what_leads_to_it() -> None:
     steps = list(xml(chain.html()).iter("li"))
     assert [[part.text for part in step] for step in steps] == [["world", "(1, 2)"], ["K", "pixel", "(3, 4)"]]
     assert [step.get("data-link") for step in steps] == [None, "fx fy"]
+
+
+def test_lamps_say_how_many_are_lit_and_mark_those_that_are_out() -> None:
+    html = Lamps("2 ways & more", (1.0, 0.25, 0.0)).html()
+    assert not mistakes(html)
+    assert 'aria-label="2 of 3 lamps lit"' in html
+    assert html.count("--glow:0.250") == 1
+    assert html.count("s3-out") == html.count("×") == 1
+    assert words(html).endswith("2 ways & more")
+
+
+def test_a_text_to_copy_is_in_its_button_unchanged() -> None:
+    text = 'from_euler("ZYX", [1, -2, 3]) <&>'
+    html = Copied("Euler & co", text).html()
+    assert not mistakes(html)
+    button = next(xml(html).iter("button"))
+    assert button.get("value") == next(xml(html).iter("code")).text == text
+    assert button.get("aria-label") == "Copy: Euler & co"

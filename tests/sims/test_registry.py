@@ -25,7 +25,7 @@ from tests.per_sim import per_sim
 from tests.server import Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
 from tests.sims.contract import contract_of
-from tests.sims.markup import bad_attributes, bad_numbers, mistakes, words, xml
+from tests.sims.markup import bad_attributes, bad_numbers, mistakes, without_code, words, xml
 
 AnySim = Sim[Any, Any]
 MOST_LABELS = 7
@@ -134,7 +134,7 @@ def test_solving_is_a_function_of_the_parameters(sim: AnySim, name: str, params:
 @each_state
 def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params: Params) -> None:
     html = readout.render(sim.readouts(params, sim.solve(params)))
-    assert not bad_numbers(words(html))
+    assert not bad_numbers(words(without_code(html)))
     assert not bad_attributes(html)
     assert not mistakes(html)
 
@@ -246,6 +246,20 @@ def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
     idents = [e.get("id") for e in page.iter() if e.get("id")]
     assert len(set(idents)) == len(idents)
     assert {*readout.folded(sim.readouts(params, solution))} <= {"", *sim.folds}, "a fold that isn't declared"
+
+
+@each_state
+def test_controls_are_arranged_without_loss(sim: AnySim, name: str, params: Params) -> None:
+    assert sorted(params.arranged) == sorted(params.visible)
+    assert {params.about(each)[0].isupper() and not params.about(each).endswith(".") for each in params.visible} == {
+        True
+    }
+    page = xml(Column(sim).html(params, None))
+    stand = [e.get("data-part", "").removeprefix("control:") for e in page.iter() if e.get("data-part")]
+    assert (
+        Column(sim).of(params, None).parts["arranged"].split()
+        == [n for n in stand if n in params.visible][: len([n for n in params.visible if not params.kinds[n].group])]
+    )
 
 
 @each_state
