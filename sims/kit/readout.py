@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -36,19 +37,23 @@ Links = tuple[tuple[str, ...], ...]
 """By rows: what each entry of a matrix is highlighted with, several names with blanks between; empty for nothing."""
 
 
-def mathml(value: Any, digits: int = 3, *, roles: tuple[str, ...] = (), links: Links = ()) -> str:
-    """A number, vector (as a column) or matrix in MathML.
+def mathml(value: Any, digits: int | tuple[int, ...] = 3, *, roles: tuple[str, ...] = (), links: Links = ()) -> str:
+    """A number, vector (as a column) or matrix in MathML, with as many digits in all columns, or in each its own.
 
     `roles` are colours of the palette for a matrix's columns, with lines like those of the axes as a second cue.
     """
     array = np.asarray(value, dtype=float)
-    return _mathml(array.shape, array.tobytes(), digits, roles, links)
+    columns = (digits,) if isinstance(digits, int) else digits
+    return _mathml(array.shape, array.tobytes(), columns, roles, links)
 
 
 @lru_cache(maxsize=512)
-def _mathml(shape: tuple[int, ...], numbers: bytes, digits: int, roles: tuple[str, ...], links: Links) -> str:
+def _mathml(
+    shape: tuple[int, ...], numbers: bytes, digits: tuple[int, ...], roles: tuple[str, ...], links: Links
+) -> str:
     """As `mathml`; most matrices of a state were in the state before it too."""
-    return _layout(shape, roles, links) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
+    values = zip(np.frombuffer(numbers).tolist(), cycle(digits), strict=False)
+    return _layout(shape, roles, links) % tuple([figure(value, each) for value, each in values])
 
 
 @lru_cache(maxsize=128)
@@ -87,6 +92,11 @@ def symbol(name: str, sub: str = "") -> str:
     """An identifier, upright when it is longer than a letter, with an optional subscript."""
     base = f"<mi>{escape(name)}</mi>"
     return f"<msub>{base}<mi>{escape(sub)}</mi></msub>" if sub else base
+
+
+def under(value: str, words: str) -> str:
+    """MathML with words below it."""
+    return f"<munder>{value}<mtext>{escape(words)}</mtext></munder>"
 
 
 @dataclass(frozen=True)
