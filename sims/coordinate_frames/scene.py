@@ -1,4 +1,4 @@
-"""The scene: a car in the world, the axes of a convention on its roof, and a point in them."""
+"""The scene: a car in the world, the axes of a convention on its roof, others elsewhere, and a point in both."""
 
 from __future__ import annotations
 
@@ -8,46 +8,94 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.coordinate_frames import meshes
-from sims.coordinate_frames.conventions import Axes
+from sims.coordinate_frames.conventions import Drawn
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import distance_in_words, in_brackets
 from sims.coordinate_frames.solution import DRAWN, FramesSolution
 from sims.kit.palette import AXES, DASHES
 from sims.kit.scene.stage import Stage
-from sims.kit.types import IDENTITY, ORIGIN, Quaternion
+from sims.kit.types import IDENTITY, ORIGIN, Place, Quaternion
 
-LENGTH, GHOST_LENGTH = 1.25, 1.52
-"""Lengths of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
+LENGTH, APART, TOGETHER = 1.25, 1.0, 1.52
+"""Lengths of the first axes, and of the second ones elsewhere or at the first: there they reach beyond."""
+BEYOND = 0.13
+"""How far beyond its axis a letter stands."""
+RADIUS, LIT_RADIUS, DIM_RADIUS = 0.02, 0.034, 0.012
+"""Radii of an axis, of one that the rule is at, and of the others then."""
 
 
 def seen(p: FramesParams, s: FramesSolution) -> list[Array]:
     """What must be in sight."""
-    return [] if s.point_world is None else [s.point_world]
+    found = [] if s.point_world is None else [s.point_world]
+    return [*found, *(s.origin_world + APART * s.axes_to.basis.T)] if s.apart else found
 
 
 class FramesScene:
-    """The axes begin on the car's roof."""
+    """The first axes begin on the car's roof."""
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=6.0, height=FLOOR)
         Car(stage)
         stage.ball("/origin", 0.05, "ink")
-        self.axes = AxesFigure(stage, "/axes", LENGTH)
-        self.second = AxesFigure(stage, "/to", GHOST_LENGTH, "′", ghost=True)
+        self.axes = AxesFigure(stage, "/axes")
+        self.second = Second(stage)
         self.grids = {name: Grid(stage, f"/axes/{name}", *pair) for name, pair in GRIDS.items()}
         self.hand = Hand(stage, "/rule")
         self.box = Box(stage, "/axes/box")
         self.point = Point(stage)
+        self.direction = Direction(stage)
 
     def draw(self, p: FramesParams, s: FramesSolution) -> None:
-        self.axes.draw(s.axes)
-        self.second.node.show(s.axes_to is not s.axes)
-        self.second.draw(s.axes_to)
+        self.axes.draw(s.drawn, LENGTH)
+        self.axes.light(p.lit)
+        self.second.draw(s)
         for name, grid in self.grids.items():
-            grid.node.show(getattr(p, name))
-        self.hand.draw(s.axes, p.rule, p.show_rule)
+            grid.draw(s.corner, shown=getattr(p, name))
+        self.hand.draw(s, p.rule, p.show_rule)
         self.box.draw(s.corner)
         self.point.draw(p, s)
+        self.direction.draw(s)
+
+
+class Second:
+    """The second frame, the ring by which it is pulled, and how far it is from the first."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.axes = GhostAxes(stage, "/to")
+        self.grip = stage.grip("/second", 0.055)
+        self.shift = stage.lines("/shift", "ghost", width=1.5, dash=(0.03, 0.04))
+        stage.linked("origin", self.shift, self.grip)
+
+    def draw(self, s: FramesSolution) -> None:
+        place = s.origin_world.tolist()
+        self.axes.node.show(s.apart or s.axes_to is not s.axes)
+        self.axes.node.pose(position=place)
+        self.axes.draw(s.drawn_to, APART if s.apart else TOGETHER)
+        self.grip.pose(position=place)
+        self.shift.show(s.apart)
+        if s.apart:
+            self.shift.path([ORIGIN, place])
+
+
+class Direction:
+    """(x, y, z) with w = 0: one arrow, drawn from either origin; and where the point is for the second."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.arrows = stage.arrows("/directions", "ink", radius=0.014)
+        self.label = stage.label("/directions/label", "same direction", anchor="bottom-left")
+        self.sight = stage.lines("/sight", "held", width=1.5, dash=(0.05, 0.05))
+        stage.linked("w", self.arrows)
+
+    def draw(self, s: FramesSolution) -> None:
+        starts = [] if s.arrow is None else [np.zeros(3)] * (s.tip is None) + [s.origin_world] * s.apart
+        self.arrows.draw(np.array([[start, start + s.arrow] for start in starts]))
+        copied = s.arrow is not None and s.apart and (s.tip is None or s.cartesian is None)
+        self.label.show(copied)
+        if copied:
+            self.label.pose(position=s.origin_world + s.arrow)
+        self.sight.show(s.apart and s.corner is not None)
+        if s.point_world is not None and s.corner is not None:
+            self.sight.path([s.origin_world, s.point_world])
 
 
 class Box:
@@ -77,7 +125,7 @@ class Point:
 
     def __init__(self, stage: Stage) -> None:
         self.grip = stage.grip("/point", 0.06)
-        self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-right")
+        self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-center")
         self.ray = stage.lines("/ray", "held", width=1.5)
         stage.linked("w", self.ray)
         self.undivided = stage.ball("/undivided", 0.04, "ghost")
@@ -105,7 +153,11 @@ QUARTER: Quaternion = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
 """Turns the car's nose, +X of its own, to forward."""
 Z_ROUND: Quaternion = (0.0, 1.0, 0.0, 0.0)
 FLOOR = -0.66
-ARC_RADIUS = 0.42
+CLEAR = 0.4
+"""Opacity of the car: an axis that leads down is seen through it."""
+ARC_RADIUS = 0.85
+KNUCKLES = (0.22, -0.09, 0.17)
+"""Where the knuckles are in the axes: the thumb then lies along Z, and X runs along the fingers."""
 WORDS = {
     "forward": ((0.0, 0.95, -0.36), (0.0, 1.38, -0.36), (0.0, 1.58, -0.36)),
     "right": ((1.15, 0.1, FLOOR), (1.5, 0.1, FLOOR), (1.68, 0.1, FLOOR)),
@@ -124,7 +176,7 @@ class Car:
         stage.group("/car").pose(QUARTER)
         parts = meshes.car()
         for name, color in (("body", body), ("glass", glass), ("tyres", tyres), ("trim", trim)):
-            stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"))
+            stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"), opacity=CLEAR)
         for word, (tail, tip, place) in WORDS.items():
             stage.arrow(f"/{word}", "ghost", tail, tip, radius=0.012)
             stage.label(f"/{word}/label", word, place)
@@ -133,38 +185,84 @@ class Car:
 class AxesFigure:
     """A convention's axes. What belongs to Z hangs on a node of its own, which turns round for left-handed axes."""
 
-    def __init__(self, stage: Stage, name: str, length: float, mark: str = "", *, ghost: bool = False) -> None:
+    MARK = ""
+
+    def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
         self.third = stage.group(f"{name}/third")
-        for axis, path, tip in zip(AXES, (name, name, f"{name}/third"), length * np.eye(3), strict=True):
-            if ghost:
-                line = stage.lines(f"{path}/{axis}", axis, [np.zeros(3), tip], width=2.0, dash=DASHES[axis])
-                stage.linked("to", line)
-            else:
-                stage.linked("convention", stage.arrow(f"{path}/{axis}", axis, np.zeros(3), tip, radius=0.02))
-            stage.label(f"{path}/letter_{axis}", axis.upper() + mark, tip * (1.0 + 0.13 / length))
+        paths = (name, name, f"{name}/third")
+        self.letters = [
+            stage.label(f"{path}/letter_{a}", a.upper() + self.MARK) for a, path in zip(AXES, paths, strict=True)
+        ]
+        self.shafts(stage, [f"{path}/{axis}" for axis, path in zip(AXES, paths, strict=True)])
 
-    def draw(self, axes: Axes) -> None:
-        self.node.pose(axes.wxyz)
-        self.third.pose(IDENTITY if axes.sign > 0.0 else Z_ROUND)
+    def shafts(self, stage: Stage, names: list[str]) -> None:
+        self.arrows = [stage.arrows(name, axis, radius=RADIUS) for axis, name in zip(AXES, names, strict=True)]
+        stage.linked("convention", *self.arrows)
+
+    def reach(self, k: int, tip: Place) -> None:
+        self.arrows[k].between((ORIGIN, tip))
+
+    def draw(self, drawn: Drawn, length: float) -> None:
+        """From the node's origin; Z is shorter while it changes sides."""
+        self.node.pose(drawn.wxyz)
+        self.third.pose(IDENTITY if drawn.side >= 0.0 else Z_ROUND)
+        height = max(abs(drawn.side), 0.01) * length
+        for k, (letter, tip) in enumerate(zip(self.letters, _along_axes(length, height), strict=True)):
+            self.reach(k, tip)
+            letter.pose(position=_along_axes(length + BEYOND, height + BEYOND)[k])
+
+    def light(self, lit: str | None) -> None:
+        """Make one axis thick and the others thin."""
+        for axis, arrow in zip(AXES, self.arrows, strict=True):
+            arrow.thickness(RADIUS if lit is None else LIT_RADIUS if axis == lit else DIM_RADIUS)
+
+
+class GhostAxes(AxesFigure):
+    """Those of the second frame: thin, and dashed."""
+
+    MARK = "′"
+
+    def shafts(self, stage: Stage, names: list[str]) -> None:
+        self.lines = [stage.lines(n, a, width=2.5, dash=DASHES[a]) for a, n in zip(AXES, names, strict=True)]
+        stage.linked("to", *self.lines)
+
+    def reach(self, k: int, tip: Place) -> None:
+        self.lines[k].path((ORIGIN, tip))
+
+
+def _along_axes(length: float, height: float) -> tuple[Place, Place, Place]:
+    return (length, 0.0, 0.0), (0.0, length, 0.0), (0.0, 0.0, height)
 
 
 class Grid:
-    """The plane of two axes: lines along each in its colour."""
+    """The plane of two axes: faint lines along each in its colour, and a strong one through the point's foot."""
 
-    def __init__(self, stage: Stage, name: str, first: int, second: int, size: float = 1.0, cell: float = 0.25) -> None:
-        offsets = np.arange(-size, size + 0.5 * cell, cell)
-        pieces = np.zeros((2, len(offsets), 2, 3))
-        for half, (along, across) in zip(pieces, ((first, second), (second, first)), strict=True):
-            half[:, 0, along], half[:, 1, along] = -size, size
-            half[:, :, across] = offsets[:, None]
-        roles = [AXES[first]] * len(offsets) + [AXES[second]] * len(offsets)
-        self.node = stage.strokes(name, roles, width=1.0)
-        self.node.draw(pieces.reshape(-1, 2, 3).tolist())
+    def __init__(self, stage: Stage, name: str, first: int, second: int, size: float = 1.5, cell: float = 0.5) -> None:
+        self.offsets, self.size = np.arange(-size, size + 0.5 * cell, cell), size
+        self.node = stage.strokes(name, [AXES[first], AXES[second]] * len(self.offsets), width=1.0, faint=True)
+        both = [self._lines(first, second, self.offsets), self._lines(second, first, self.offsets)]
+        self.node.draw(np.stack(both, axis=1).reshape(-1, 2, 3))
+        # With all three there is one along each axis.
+        self.along, self.at = (second, first) if (first, second) == (0, 2) else (first, second)
+        self.through = stage.strokes(f"{name}/through", [AXES[self.along]], width=3.0)
+
+    def _lines(self, along: int, at: int, offsets: Array) -> Array:
+        """Lines along an axis, at places on another."""
+        pieces = np.zeros((len(offsets), 2, 3))
+        pieces[:, :, along] = -self.size, self.size
+        pieces[:, :, at] = offsets[:, None]
+        return pieces
+
+    def draw(self, corner: Array | None, *, shown: bool) -> None:
+        self.node.show(shown)
+        self.through.show(corner is not None)
+        if shown and corner is not None:
+            self.through.draw(self._lines(self.along, self.at, corner[[self.at]]))
 
 
 class Hand:
-    """A right or a left hand with its thumb along Z, and the arc that its fingers sweep, from X to Y."""
+    """A right or a left hand at the origin, its thumb along Z, and the arc that its fingers sweep, from X to Y."""
 
     def __init__(self, stage: Stage, name: str) -> None:
         self.node = stage.group(name)
@@ -172,14 +270,13 @@ class Hand:
         self.arc = stage.lines(f"{name}/arc", "ink", width=3.5)
         self.head = stage.mesh(f"{name}/head", meshes.arrow_head(), "ink")
 
-    def draw(self, axes: Axes, rule: float, shown: bool) -> None:
+    def draw(self, s: FramesSolution, rule: float, shown: bool) -> None:
         self.node.show(shown)
         if not shown:
             return
-        self.node.pose(axes.wxyz)
+        self.node.pose(s.drawn.wxyz)
         for side, fingers in self.hands.items():
-            fingers.node.show(side == axes.handedness)
-            fingers.node.pose(position=axes.hand)
+            fingers.node.show(side == s.handedness)
             fingers.bend(rule)
         angle = rule * math.pi / 2
         self.arc.arc(ARC_RADIUS, angle)
@@ -191,6 +288,8 @@ class _Fingers:
 
     def __init__(self, stage: Stage, name: str, *, left: bool) -> None:
         self.node = stage.group(name)
+        x, y, z = KNUCKLES
+        self.node.pose(position=(x, y, -z if left else z))
         parts = meshes.hand(left=left)
         self.joints = []
         stage.mesh(f"{name}/palm", parts["palm"], "ghost")
