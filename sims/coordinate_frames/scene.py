@@ -74,7 +74,7 @@ class Second:
         self.grip.pose(position=place)
         self.shift.show(s.apart)
         if s.apart:
-            self.shift.path([ORIGIN, place])
+            self.shift.path((ORIGIN, place))
 
 
 class Direction:
@@ -95,7 +95,7 @@ class Direction:
             self.label.pose(position=s.origin_world + s.arrow)
         self.sight.show(s.apart and s.corner is not None)
         if s.point_world is not None and s.corner is not None:
-            self.sight.path([s.origin_world, s.point_world])
+            self.sight.path(np.array([s.origin_world, s.point_world]))
 
 
 class Box:
