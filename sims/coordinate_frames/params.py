@@ -98,8 +98,8 @@ class FramesParams(Params):
     def options(self, name: str) -> Mapping[Any, str]:
         if name != "handedness":
             return super().options(name)
-        absent = own_hand(self.convention) if self.handedness is None else None
-        return {None if hand == absent else hand: words for hand, words in HANDS.items()}
+        own = own_hand(self.convention)
+        return {None if hand == own != self.handedness else hand: words for hand, words in HANDS.items()}
 
     def query_items(self) -> dict[str, str]:
         """As of every sim; but as nothing leads to the opening, the defaults have something to say."""

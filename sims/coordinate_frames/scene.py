@@ -8,20 +8,16 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.coordinate_frames import meshes
-from sims.coordinate_frames.conventions import Drawn
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import distance_in_words, in_brackets
+from sims.coordinate_frames.scene_axes import AxesFigure, Box, GhostAxes, Grid
+from sims.coordinate_frames.scene_hand import Hand
 from sims.coordinate_frames.solution import DRAWN, FramesSolution
-from sims.kit.palette import AXES, DASHES
 from sims.kit.scene.stage import Stage
-from sims.kit.types import IDENTITY, ORIGIN, Place, Quaternion
+from sims.kit.types import ORIGIN, Quaternion
 
 LENGTH, APART, TOGETHER = 1.25, 1.0, 1.52
 """Lengths of the first axes, and of the second ones elsewhere or at the first: there they reach beyond."""
-BEYOND = 0.13
-"""How far beyond its axis a letter stands."""
-RADIUS, LIT_RADIUS, DIM_RADIUS = 0.02, 0.034, 0.012
-"""Radii of an axis, of one that the rule is at, and of the others then."""
 
 
 def seen(p: FramesParams, s: FramesSolution) -> list[Array]:
@@ -87,37 +83,14 @@ class Direction:
         stage.linked("w", self.arrows)
 
     def draw(self, s: FramesSolution) -> None:
-        starts = [] if s.arrow is None else [np.zeros(3)] * (s.tip is None) + [s.origin_world] * s.apart
-        self.arrows.draw(np.array([[start, start + s.arrow] for start in starts]))
-        copied = s.arrow is not None and s.apart and (s.tip is None or s.cartesian is None)
+        self.arrows.draw(s.arrows)
+        copied = s.apart and len(s.arrows) > 0 and (s.tip is None or s.cartesian is None)
         self.label.show(copied)
         if copied:
-            self.label.pose(position=s.origin_world + s.arrow)
+            self.label.pose(position=s.arrows[-1, 1])
         self.sight.show(s.apart and s.corner is not None)
         if s.point_world is not None and s.corner is not None:
             self.sight.path(np.array([s.origin_world, s.point_world]))
-
-
-class Box:
-    """From the point a dashed line to each plane, along the axis whose coordinate it is; the other edges thin."""
-
-    def __init__(self, stage: Stage, name: str) -> None:
-        self.node = stage.group(name)
-        self.edges = [stage.lines(f"{name}/{axis}", axis, width=2.5, dash=DASHES[axis]) for axis in AXES]
-        self.others = stage.strokes(f"{name}/others", ["ghost"] * 6, width=1.0)
-        stage.linked("point", *self.edges)
-
-    def draw(self, corner: Array | None) -> None:
-        self.node.show(corner is not None)
-        if corner is None:
-            return
-        x, y, z = corner.tolist()
-        feet = (0.0, y, z), (x, 0.0, z), (x, y, 0.0)
-        for edge, foot in zip(self.edges, feet, strict=True):
-            edge.path([foot, (x, y, z)])
-        on_x, on_y, on_z = (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
-        yz, xz, xy = feet
-        self.others.draw([(xy, on_x), (xy, on_y), (xz, on_x), (xz, on_z), (yz, on_y), (yz, on_z)])
 
 
 class Point:
@@ -151,13 +124,9 @@ class Point:
 
 QUARTER: Quaternion = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
 """Turns the car's nose, +X of its own, to forward."""
-Z_ROUND: Quaternion = (0.0, 1.0, 0.0, 0.0)
 FLOOR = -0.66
 CLEAR = 0.4
 """Opacity of the car: an axis that leads down is seen through it."""
-ARC_RADIUS = 0.85
-KNUCKLES = (0.22, -0.09, 0.17)
-"""Where the knuckles are in the axes: the thumb then lies along Z, and X runs along the fingers."""
 WORDS = {
     "forward": ((0.0, 0.95, -0.36), (0.0, 1.38, -0.36), (0.0, 1.58, -0.36)),
     "right": ((1.15, 0.1, FLOOR), (1.5, 0.1, FLOOR), (1.68, 0.1, FLOOR)),
@@ -180,133 +149,3 @@ class Car:
         for word, (tail, tip, place) in WORDS.items():
             stage.arrow(f"/{word}", "ghost", tail, tip, radius=0.012)
             stage.label(f"/{word}/label", word, place)
-
-
-class AxesFigure:
-    """A convention's axes. What belongs to Z hangs on a node of its own, which turns round for left-handed axes."""
-
-    MARK = ""
-
-    def __init__(self, stage: Stage, name: str) -> None:
-        self.node = stage.group(name)
-        self.third = stage.group(f"{name}/third")
-        paths = (name, name, f"{name}/third")
-        self.letters = [
-            stage.label(f"{path}/letter_{a}", a.upper() + self.MARK) for a, path in zip(AXES, paths, strict=True)
-        ]
-        self.shafts(stage, [f"{path}/{axis}" for axis, path in zip(AXES, paths, strict=True)])
-
-    def shafts(self, stage: Stage, names: list[str]) -> None:
-        self.arrows = [stage.arrows(name, axis, radius=RADIUS) for axis, name in zip(AXES, names, strict=True)]
-        stage.linked("convention", *self.arrows)
-
-    def reach(self, k: int, tip: Place) -> None:
-        self.arrows[k].between((ORIGIN, tip))
-
-    def draw(self, drawn: Drawn, length: float) -> None:
-        """From the node's origin; Z is shorter while it changes sides."""
-        self.node.pose(drawn.wxyz)
-        self.third.pose(IDENTITY if drawn.side >= 0.0 else Z_ROUND)
-        height = max(abs(drawn.side), 0.01) * length
-        for k, (letter, tip) in enumerate(zip(self.letters, _along_axes(length, height), strict=True)):
-            self.reach(k, tip)
-            letter.pose(position=_along_axes(length + BEYOND, height + BEYOND)[k])
-
-    def light(self, lit: str | None) -> None:
-        """Make one axis thick and the others thin."""
-        for axis, arrow in zip(AXES, self.arrows, strict=True):
-            arrow.thickness(RADIUS if lit is None else LIT_RADIUS if axis == lit else DIM_RADIUS)
-
-
-class GhostAxes(AxesFigure):
-    """Those of the second frame: thin, and dashed."""
-
-    MARK = "′"
-
-    def shafts(self, stage: Stage, names: list[str]) -> None:
-        self.lines = [stage.lines(n, a, width=2.5, dash=DASHES[a]) for a, n in zip(AXES, names, strict=True)]
-        stage.linked("to", *self.lines)
-
-    def reach(self, k: int, tip: Place) -> None:
-        self.lines[k].path((ORIGIN, tip))
-
-
-def _along_axes(length: float, height: float) -> tuple[Place, Place, Place]:
-    return (length, 0.0, 0.0), (0.0, length, 0.0), (0.0, 0.0, height)
-
-
-class Grid:
-    """The plane of two axes: faint lines along each in its colour, and a strong one through the point's foot."""
-
-    def __init__(self, stage: Stage, name: str, first: int, second: int, size: float = 1.5, cell: float = 0.5) -> None:
-        self.offsets, self.size = np.arange(-size, size + 0.5 * cell, cell), size
-        self.node = stage.strokes(name, [AXES[first], AXES[second]] * len(self.offsets), width=1.0, faint=True)
-        both = [self._lines(first, second, self.offsets), self._lines(second, first, self.offsets)]
-        self.node.draw(np.stack(both, axis=1).reshape(-1, 2, 3))
-        # With all three there is one along each axis.
-        self.along, self.at = (second, first) if (first, second) == (0, 2) else (first, second)
-        self.through = stage.strokes(f"{name}/through", [AXES[self.along]], width=3.0)
-
-    def _lines(self, along: int, at: int, offsets: Array) -> Array:
-        """Lines along an axis, at places on another."""
-        pieces = np.zeros((len(offsets), 2, 3))
-        pieces[:, :, along] = -self.size, self.size
-        pieces[:, :, at] = offsets[:, None]
-        return pieces
-
-    def draw(self, corner: Array | None, *, shown: bool) -> None:
-        self.node.show(shown)
-        self.through.show(corner is not None)
-        if shown and corner is not None:
-            self.through.draw(self._lines(self.along, self.at, corner[[self.at]]))
-
-
-class Hand:
-    """A right or a left hand at the origin, its thumb along Z, and the arc that its fingers sweep, from X to Y."""
-
-    def __init__(self, stage: Stage, name: str) -> None:
-        self.node = stage.group(name)
-        self.hands = {side: _Fingers(stage, f"{name}/{side}", left=side == "left") for side in ("right", "left")}
-        self.arc = stage.lines(f"{name}/arc", "ink", width=3.5)
-        self.head = stage.mesh(f"{name}/head", meshes.arrow_head(), "ink")
-
-    def draw(self, s: FramesSolution, rule: float, shown: bool) -> None:
-        self.node.show(shown)
-        if not shown:
-            return
-        self.node.pose(s.drawn.wxyz)
-        for side, fingers in self.hands.items():
-            fingers.node.show(side == s.handedness)
-            fingers.bend(rule)
-        angle = rule * math.pi / 2
-        self.arc.arc(ARC_RADIUS, angle)
-        self.head.pose(_about_z(angle), (ARC_RADIUS * math.cos(angle), ARC_RADIUS * math.sin(angle), 0.0))
-
-
-class _Fingers:
-    """One hand; its fingers bend at three joints."""
-
-    def __init__(self, stage: Stage, name: str, *, left: bool) -> None:
-        self.node = stage.group(name)
-        x, y, z = KNUCKLES
-        self.node.pose(position=(x, y, -z if left else z))
-        parts = meshes.hand(left=left)
-        self.joints = []
-        stage.mesh(f"{name}/palm", parts["palm"], "ghost")
-        stage.mesh(f"{name}/thumb", parts["thumb"], "z")
-        path = name
-        for part, at in zip(("near", "middle", "far"), (0.04, *meshes.SEGMENTS), strict=True):
-            path = f"{path}/{part}"
-            joint = stage.mesh(path, parts[part], "ghost")
-            joint.pose(position=(at, 0.0, 0.0))
-            self.joints.append(joint)
-        side = "left" if left else "right"
-        stage.label(f"{name}/label", f"{side} hand", (-0.72, 0.0, 0.16 if left else -0.16))
-
-    def bend(self, rule: float) -> None:
-        for joint, most in zip(self.joints, meshes.CURL, strict=True):
-            joint.pose(_about_z(math.radians(most) * rule))
-
-
-def _about_z(angle: float) -> Quaternion:
-    return math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)

@@ -55,7 +55,9 @@ class FramesSolution:
     distance: float | None
     """From the origin to the point; None for a direction."""
     arrow: Array | None
-    """What is drawn of the direction (x, y, z, 0), from either origin: as long as it is, where that can be seen."""
+    """What stands for the direction (x, y, z, 0) in the world: as long as it is, where that can be seen."""
+    arrows: Array
+    """(n, 2, 3): it from each origin, but for the first one's where the arrow to `tip` stands there."""
     tip: Array | None
     """Where the arrow ends that stands for a direction or for a point out of view."""
     corner: Array | None
@@ -77,6 +79,7 @@ def solve(p: FramesParams) -> FramesSolution:
     distance = None if world is None else math.hypot(*world.tolist())
     direction, arrow = _direction(undivided)
     away = direction is not None and distance is not None and distance > IN_VIEW
+    tip = arrow if cartesian is None else ARROW * direction if direction is not None and away else None
     T, drawn = other.matrix, p.drawn
     return FramesSolution(
         basis=own.basis,
@@ -99,7 +102,8 @@ def solve(p: FramesParams) -> FramesSolution:
         direction=direction,
         distance=distance,
         arrow=arrow,
-        tip=arrow if cartesian is None else ARROW * direction if direction is not None and away else None,
+        arrows=_arrows(arrow, ([] if tip is not None else [np.zeros(3)]) + [other.origin] * bool(other.origin.any())),
+        tip=tip,
         corner=None if cartesian is None or away or p.turn else cartesian * (1.0, 1.0, drawn.side) + 0.0,
     )
 
@@ -121,6 +125,11 @@ def _direction(vector: Array) -> tuple[Array | None, Array | None]:
     if SHORTEST <= length <= IN_VIEW:
         return unit, vector
     return unit, (ARROW if length > IN_VIEW else SHORTEST) * unit
+
+
+def _arrows(arrow: Array | None, starts: list[Array]) -> Array:
+    """Tail and tip of the same arrow from each start."""
+    return np.array([[start, start + arrow] for start in starts if arrow is not None]).reshape(-1, 2, 3)
 
 
 def _readings(place: Array) -> dict[Convention, Array]:

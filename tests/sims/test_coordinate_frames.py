@@ -616,7 +616,7 @@ def test_a_chosen_convention_is_seen_to_turn_but_not_where_motion_is_reduced(rig
     assert rig.session.params == state(to="camera").moved({"convention": "ros"})
     rig.session.motion.reduced = True
     rig.browser.move("convention", "enu")
-    assert rig.session.params.turn is None  # type: ignore[attr-defined]
+    assert rig.session.params.turn is None
     rig.session.motion.reduced = False
 
 
