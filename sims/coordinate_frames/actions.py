@@ -57,8 +57,9 @@ def sweep(p: FramesParams) -> Iterator[Step]:
 def run_away(p: FramesParams) -> Iterator[Step]:
     """From w = 1 to a direction."""
     yield Step({"w": 1.0}, 0.0)
-    yield Step({"w": 1.0}, 0.4)
-    yield Step({"w": 0.0}, 1.2)
+    yield Step({"w": 1.0}, 1.2, words="The point is (x/w, y/w, z/w). Now w goes to 0 …")
+    yield Step({"w": 0.0}, 1.2, words="… it runs away along the arrow …")
+    yield Step({}, 2.0, words="… and a direction is left: the last column of T counts 0 times.")
 
 
 def turn(before: FramesParams, after: FramesParams) -> Iterator[Step]:

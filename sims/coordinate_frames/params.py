@@ -32,7 +32,7 @@ BOUND = 5.0
 SHOW = "Show"
 Turn = tuple[float, float, float, float, float]
 OPENING: Mapping[str, Any] = {
-    "convention": "ros", "to": "camera", "point": (0.4, 0.7, 0.9), "origin": (0.2, -1.2, 0.0), "show_rule": False,
+    "convention": "ros", "to": "camera", "point": (0.4, 0.7, 0.8), "origin": (0.2, -1.2, 0.0), "show_rule": False,
 }  # fmt: skip
 """Where nothing at all is said; who says anything means the defaults by the rest."""
 

@@ -43,16 +43,17 @@ def caption(p: FramesParams, s: FramesSolution) -> str:
     if p.w != 1.0:
         return "The point is (x/w, y/w, z/w): the smaller w, the farther away, and at 0 a direction is left."
     if s.apart:
-        return "Pull the second frame by its ring: the point’s numbers in it change, the direction’s do not."
+        return "Pull X′ Y′ Z′ by their ring: the point’s numbers in these axes change, the direction’s do not."
     if s.axes_to is s.axes:
         return "Choose a second convention: the same point gets other numbers, and T says how."
-    return "One point, two sets of axes: T leads from one’s numbers to the other’s. Pull them apart by the ring."
+    return "One point, two sets of axes: T turns the first numbers into the second. Pull X′ Y′ Z′ off by the ring."
 
 
 def readouts(p: FramesParams, s: FramesSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield Note(f"{title(p)}: {directions(s.axes)}. {s.handedness.capitalize()}-handed.")
-    yield Note(f"{NAMES[p.to]}: {directions(s.axes_to, '′')}. {s.axes_to.handedness.capitalize()}-handed.")
+    if s.apart or s.axes_to is not s.axes:
+        yield Note(f"{NAMES[p.to]}: {directions(s.axes_to, '′')}. {s.axes_to.handedness.capitalize()}-handed.")
     yield from _product(p, s)
     yield Formula(f"Its determinant: {_meaning(s)}", "<mi>det</mi><mi>T</mi>", mathml(s.determinant, 0))
     yield Fold(HOMOGENEOUS)
@@ -98,7 +99,7 @@ def _rule(s: FramesSolution) -> str:
 
 
 def _meaning(s: FramesSolution) -> str:
-    return "a rotation" if s.determinant > 0.0 else "improper (a reflection), as one is left-handed"
+    return "a rotation" if s.determinant > 0.0 else "improper (a reflection)"
 
 
 def _homogeneous(p: FramesParams, s: FramesSolution) -> Iterator[Readout]:

@@ -74,8 +74,8 @@ def solve(p: FramesParams) -> FramesSolution:
     own, other = p.axes, second(p.convention, p.handedness, p.to, p.origin)
     homogeneous, free = np.array([*p.point, p.w]), np.array([*p.point, 0.0])
     cartesian = _divided(homogeneous)
-    world = None if cartesian is None else frames.to_world(cartesian, own.basis)
-    undivided = world if world is not None and p.w == 1.0 else frames.to_world(p.point, own.basis)
+    world = None if cartesian is None else own.basis @ cartesian + 0.0
+    undivided = world if world is not None and p.w == 1.0 else own.basis @ homogeneous[:3] + 0.0
     distance = None if world is None else math.hypot(*world.tolist())
     direction, arrow = _direction(undivided)
     away = direction is not None and distance is not None and distance > IN_VIEW
@@ -102,7 +102,7 @@ def solve(p: FramesParams) -> FramesSolution:
         direction=direction,
         distance=distance,
         arrow=arrow,
-        arrows=_arrows(arrow, ([] if tip is not None else [np.zeros(3)]) + [other.origin] * bool(other.origin.any())),
+        arrows=_arrows(arrow, tip, other.origin),
         tip=tip,
         corner=None if cartesian is None or away or p.turn else cartesian * (1.0, 1.0, drawn.side) + 0.0,
     )
@@ -127,10 +127,11 @@ def _direction(vector: Array) -> tuple[Array | None, Array | None]:
     return unit, (ARROW if length > IN_VIEW else SHORTEST) * unit
 
 
-def _arrows(arrow: Array | None, starts: list[Array]) -> Array:
-    """Tail and tip of the same arrow from each start."""
+def _arrows(arrow: Array | None, tip: Array | None, origin: Array) -> Array:
+    """Tail and tip of the same arrow from each origin that has to show it."""
+    starts = ([np.zeros(3)] if tip is None else []) + ([origin] if origin.any() else [])
     return np.array([[start, start + arrow] for start in starts if arrow is not None]).reshape(-1, 2, 3)
 
 
 def _readings(place: Array) -> dict[Convention, Array]:
-    return dict(zip(CONVENTIONS, frames.coordinates(place, BASES), strict=True))
+    return dict(zip(CONVENTIONS, np.vecmat(place, BASES) + 0.0, strict=True))

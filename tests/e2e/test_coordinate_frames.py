@@ -176,7 +176,7 @@ def test_it_opens_with_two_frames_whose_product_is_beside_the_scene(classroom: C
         )
         assert shown[0] <= width
         assert shown[1] <= height
-        learner.says("Pull the second frame by its ring")
+        learner.says("Pull X′ Y′ Z′ by their ring")
 
 
 def test_the_second_frame_is_pulled_by_its_ring(classroom: Classroom) -> None:
