@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from inspect import isgeneratorfunction
+from itertools import chain
 from typing import Any
 
 from pydantic import ValidationError
@@ -126,7 +127,18 @@ class Session:
             changes = entered(self.sim.offers(self.params, self.solution, *self.given), name, text)
         except LookupError:
             raise Unknown("control, or nothing in it,", f"{name}: {text}", self.params.kinds) from None
+        before = self.params
         self.change(changes)
+        self._ease(before)
+
+    def _ease(self, before: Params) -> None:
+        """Let it be seen how the state comes from the one before, where the sim shows that."""
+        if self.sim.eases is None or self.motion.reduced:
+            return
+        steps = self.sim.eases(before, self.params)
+        if (first := next(steps, None)) is not None:
+            self._set(self.params.moved(first.changes))
+            self.motion.begin(chain([first], steps))
 
     def _dial(self, name: str) -> Dial[Any, Any] | None:
         return next((dial for dial in self.sim.dials if dial.handle == name), None)

@@ -159,7 +159,7 @@ class Params(BaseModel):
         state, wrong = cls._read(given)
         complaints += [cls._complaint(name, given.get(name, ""), allowed) for name, allowed in wrong.items()]
         if not given and not complaints:
-            return cls().changed(cls.opening)
+            return cls(**cls.opening)
         if complaints or state is None:
             while wrong:  # what is left may be wrong without what went
                 given = {name: text for name, text in given.items() if name not in wrong}

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
+from itertools import cycle
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,15 +40,17 @@ Links = tuple[tuple[str, ...], ...]
 
 
 def mathml(
-    value: Any, digits: int = 3, *, roles: tuple[str, ...] = (), links: Links = (), rows: tuple[str, ...] = ()
-) -> str:
-    """A number, vector (as a column) or matrix in MathML.
+    value: Any, digits: int | tuple[int, ...] = 3, *, roles: tuple[str, ...] = (), links: Links = (),
+    rows: tuple[str, ...] = (),
+) -> str:  # fmt: skip
+    """A number, vector (as a column) or matrix in MathML, with as many digits in all columns, or in each its own.
 
     `roles` are colours of the palette for a matrix's columns, with lines like those of the axes as a second cue.
     `rows` are cameras' for its rows, with their letters before them.
     """
     array = np.asarray(value, dtype=float)
-    return _lettered(rows) + _mathml(array.shape, array.tobytes(), digits, roles, links, rows)
+    columns = (digits,) if isinstance(digits, int) else digits
+    return _lettered(rows) + _mathml(array.shape, array.tobytes(), columns, roles, links, rows)
 
 
 @lru_cache(maxsize=8)
@@ -59,10 +62,12 @@ def _lettered(rows: tuple[str, ...]) -> str:
 
 @lru_cache(maxsize=512)
 def _mathml(
-    shape: tuple[int, ...], numbers: bytes, digits: int, roles: tuple[str, ...], links: Links, rows: tuple[str, ...]
-) -> str:
+    shape: tuple[int, ...], numbers: bytes, digits: tuple[int, ...], roles: tuple[str, ...], links: Links,
+    rows: tuple[str, ...],
+) -> str:  # fmt: skip
     """As `mathml`; most matrices of a state were in the state before it too."""
-    return _layout(shape, roles, links, rows) % tuple([figure(v, digits) for v in np.frombuffer(numbers).tolist()])
+    values = zip(np.frombuffer(numbers).tolist(), cycle(digits), strict=False)
+    return _layout(shape, roles, links, rows) % tuple([figure(value, each) for value, each in values])
 
 
 @lru_cache(maxsize=128)
@@ -136,6 +141,11 @@ def symbol(name: str, sub: str = "") -> str:
     """An identifier, upright when it is longer than a letter, with an optional subscript."""
     base = f"<mi>{escape(name)}</mi>"
     return f"<msub>{base}<mi>{escape(sub)}</mi></msub>" if sub else base
+
+
+def under(value: str, words: str) -> str:
+    """MathML with words below it."""
+    return f"<munder>{value}<mtext>{escape(words)}</mtext></munder>"
 
 
 def copy_button(text: str, what: str) -> str:

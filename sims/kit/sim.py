@@ -205,6 +205,11 @@ class Sim(Generic[P, S]):
     """What dragging a node or a mark in a picture changes: of parameters and the place, in metres or pixels."""
     clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
     """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
+    eases: Callable[[P, P], Iterator[Step]] | None = None
+    """What is seen of a change when somebody chose or typed something, unless motion is reduced.
+
+    From the state before and the one that it leads to, which the last step must restore; the first is taken at once.
+    """
     typed: Sequence[Typed[P, S]] = ()
     dials: Sequence[Dial[P, S]] = ()
     """They stand before the other controls."""

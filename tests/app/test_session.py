@@ -449,6 +449,45 @@ def test_what_a_motion_says_ends_with_it() -> None:
     run(test)
 
 
+def slowly(before: ToyParams, after: ToyParams) -> Iterator[Step]:
+    if before.kind != after.kind:
+        yield Step({"size": before.size}, 0.0, words="Another colour.")
+        yield Step({"size": after.size + 10.0}, 0.2)
+        yield Step({"size": after.size}, 0.0)
+
+
+def easing() -> Sim[Any, Any]:
+    return dataclasses.replace(toy()[0], eases=slowly)
+
+
+def test_what_is_chosen_is_seen_to_come_about() -> None:
+    async def test() -> None:
+        room = Room(sim=easing(), start=ToyParams(size=20))
+        room.session.enter("size", "40")
+        assert room.session.motion.task is None, "nothing to be seen"
+        room.session.enter("kind", "blue")
+        assert room.session.params == ToyParams(size=40, kind="blue")
+        await room.moved()
+        await room.drawn()
+        assert max(size for size, _ in room.eye.seen) > 40.0
+        assert room.session.params == ToyParams(size=40, kind="blue")
+
+    run(test)
+
+
+def test_nothing_is_eased_for_links_and_where_motion_is_reduced() -> None:
+    async def test() -> None:
+        room = Room(sim=easing())
+        room.session.change({"kind": "blue"}, live=False)
+        assert room.session.motion.task is None
+        room.session.motion.reduced = True
+        room.session.enter("kind", "red")
+        assert room.session.params == ToyParams()
+        assert room.session.motion.task is None
+
+    run(test)
+
+
 def test_a_motion_ends_when_nobody_looks() -> None:
     async def test() -> None:
         room = Room()

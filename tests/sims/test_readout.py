@@ -26,6 +26,7 @@ from sims.kit.readout import (
     row,
     significant,
     symbol,
+    under,
 )
 from tests.sims.markup import bad_numbers, mistakes, words, xml
 
@@ -86,6 +87,18 @@ def test_a_matrix_is_written_by_rows(shape: tuple[int, ...]) -> None:
     table = [[len(list(r)) for r in t.iter("mtr")] for t in xml(html).iter("mtable")]
     rows, columns = (*shape, 1)[:2] if shape else (0, 0)
     assert table == ([[columns] * rows] if shape else [])
+
+
+def test_each_column_of_a_matrix_may_have_its_own_digits() -> None:
+    numbers = [e.text for e in xml(mathml([[1.0, -0.25], [0.0, 2.0]], (0, 2))).iter("mn")]
+    assert numbers == ["1", "−0.25", "0", "2.00"]
+
+
+def test_words_stand_under_a_vector() -> None:
+    (node,) = xml(under(mathml([1.0, 2.0]), "a & b"))
+    assert node.tag == "munder"
+    assert [child.tag for child in node] == ["mtable", "mtext"]
+    assert node[1].text == "a & b"
 
 
 def test_a_percent_sign_does_no_harm_beside_a_matrix() -> None:

@@ -78,7 +78,7 @@ def test_link_of_a_state_leads_back_to_it(sim: AnySim, name: str, params: Params
 @each_sim
 def test_defaults_are_left_out_of_the_link(sim: AnySim) -> None:
     opened = parse(sim, "")
-    assert opened == sim.params().changed(sim.params.opening)
+    assert opened == sim.params(**sim.params.opening)
     assert opened.query() == ""
     assert len(sim.params().query_items()) == bool(sim.params.opening), "the state of the defaults has a link too"
 

@@ -127,9 +127,10 @@ class Stage:
         )  # fmt: skip
         return Lines(handle, rgb, dash)
 
-    def strokes(self, name: str, roles: Sequence[str], *, width: float = 2.0) -> Strokes:
+    def strokes(self, name: str, roles: Sequence[str], *, width: float = 2.0, faint: bool = False) -> Strokes:
         """One straight piece in the colour of each role; they begin without length."""
-        colors = np.array([[self.palette.line(role)] * 2 for role in roles], np.uint8)
+        color = self.palette.faint if faint else self.palette.line
+        colors = np.array([[color(role)] * 2 for role in roles], np.uint8)
         handle = self.scene.add_line_segments(
             name, points=np.zeros(colors.shape), colors=colors, thickness=width, thickness_units="screen"
         )
