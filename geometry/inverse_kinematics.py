@@ -32,10 +32,11 @@ def inverse_kinematics(
 ) -> InverseKinematics:
     """Return joint angles that bring the end effector within a tolerance, in metres, of a target (3,).
 
-    start (n,) are the angles, in radians (metres for joints that slide), that the search sets out from: it ends near them, and doesn't wrap to ±π.
-    Singular postures are safe, each iteration turns a joint by half a radian (half a metre) at most, and the same
-    input gives the same angles. Out of reach, the angles are those of a nearest point, and `reached` is False. So it is, rarely, for
-    a target within reach: where the way to it leads over a greater distance, or is longer than 40 iterations.
+    start (n,) are the angles, in radians (metres for joints that slide), that the search sets out from: it ends near
+    them, and doesn't wrap to ±π. Singular postures are safe, each iteration turns a joint by half a radian (half a
+    metre) at most, and the same input gives the same angles. Out of reach, the angles are those of a nearest point, and
+    `reached` is False. So it is, rarely, for a target within reach: where the way to it leads over a greater distance,
+    or is longer than 40 iterations.
     Raises GeometryError for numbers that aren't finite or a tolerance that isn't above zero.
     Source: damped least squares, Wampler 1986, "Manipulator inverse kinematic solutions based on vector formulations
     and damped least-squares methods". Where they no longer halve the distance, as out of reach, the error's exact

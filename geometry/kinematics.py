@@ -222,19 +222,16 @@ def walk(links: Iterable[Link], angles: Iterable[Any]) -> list[Joint]:
     for (axis, length, twist, offset, start, slides), angle in zip(links, angles, strict=True):
         i, j, k = _TURNS[axis]
         along, origin = frame[i], end
-        moved = as_angle("angles", angle)
-        if slides:
-            offset += moved
-        else:
-            start += moved
-        _turn(frame, j, k, start)
+        moved: Any = as_angle("angles", angle)
+        way = offset + moved if slides else offset
+        _turn(frame, j, k, start if slides else start + moved)
         x = frame[0]
         end = origin[0] + length * x[0], origin[1] + length * x[1], origin[2] + length * x[2]
         if slides or offset:
-            end = end[0] + offset * along[0], end[1] + offset * along[1], end[2] + offset * along[2]
+            end = end[0] + way * along[0], end[1] + way * along[1], end[2] + way * along[2]
         if twist:
             _turn(frame, 1, 2, twist)
-        joints.append(Joint(along, origin, *frame, end, slides))
+        joints.append(Joint(along, origin, x, frame[1], frame[2], end, slides))
     return joints
 
 

@@ -142,8 +142,8 @@ def dh_arms(draw: st.DrawFn) -> tuple[Chain, Array]:
         return tuple(draw(st.lists(numbers, min_size=n, max_size=n)))
 
     chain = Chain(
-        draw(st.text("xyz", min_size=n, max_size=n)), many(st.floats(-2.0, 2.0)), many(angles), many(st.floats(-1.0, 1.0)),
-        many(angles), draw(st.text("rp", min_size=n, max_size=n)),
+        draw(st.text("xyz", min_size=n, max_size=n)), many(st.floats(-2.0, 2.0)), many(angles),
+        many(st.floats(-1.0, 1.0)), many(angles), draw(st.text("rp", min_size=n, max_size=n)),
     )  # fmt: skip
     return chain, np.array(many(st.floats(-3.0, 3.0)))
 
