@@ -8,6 +8,8 @@ from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from sims.kit.paste import LONGEST
+
 
 class Headers:
     """Adds a content security policy (nothing from other hosts) and its companions."""
@@ -49,7 +51,8 @@ class Headers:
         await self._app(scope, receive, sender)
 
 
-LARGEST_BODY = 64 * 1024
+LARGEST_BODY = LONGEST
+"""That of a text of somebody's own; no parameters have more."""
 
 
 class SmallBodies:

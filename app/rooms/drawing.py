@@ -57,12 +57,20 @@ class Drawing:
         self._drawn_at = 0.0
         self.work: Work | None = None
         """What the pool does for this session."""
+        self.words = ""
+        """What a motion says, in place of the caption."""
 
     def soon(self) -> None:
         """Solve and draw soon; calls before that happens join it."""
         self._dirty = True
         if self.task is None:
             self.task = asyncio.get_running_loop().create_task(self._draw())
+
+    def say(self, words: str) -> None:
+        """Show words in place of the caption; none, and it is back."""
+        if words != self.words:
+            self.words = words
+            self.soon()
 
     def join(self, viewer: Viewer) -> None:
         """Add a viewer and show it what is solved."""
@@ -72,7 +80,7 @@ class Drawing:
 
     def everything(self) -> Message:
         """What a page that comes shows beside the scene."""
-        return self._showing.everything(self.solved, self.solution, self.version)
+        return self._showing.everything(self.solved, self.solution, self.version, self.words)
 
     async def drawn(self, within: float | None = None) -> None:
         """Wait until nothing is to be drawn, at most for some seconds."""
@@ -92,7 +100,7 @@ class Drawing:
                 for viewer in list(self.viewers) if self.solution is not None else ():
                     self._show(viewer)
                 if self._telling.listeners:
-                    self._telling.tell(self._showing.news(self.solved, self.solution, self.version))
+                    self._telling.tell(self._showing.news(self.solved, self.solution, self.version, self.words))
                 self._drawn_at = time.monotonic()
                 self._telling.tell_state_soon()
         except Exception:

@@ -11,7 +11,7 @@ from sims.kit.sim import Step
 
 FRAME = 1 / 30
 PAUSE = 0.6
-"""Seconds at each step when motion is reduced."""
+"""Seconds at each step when motion is reduced; one with words takes its own time, so that they can be read."""
 
 
 def eased(fraction: float) -> float:
@@ -44,7 +44,8 @@ async def play(
         start = now()
         if reduced or step.seconds <= 0.0:
             yield step.changes
-            await asyncio.sleep(PAUSE if reduced else 0.0)
+            pause = max(PAUSE, step.seconds) if step.words else PAUSE
+            await asyncio.sleep(pause if reduced else 0.0)
             continue
         begin = loop.time()
         while (fraction := (loop.time() - begin) / step.seconds) < 1.0:
@@ -57,16 +58,19 @@ async def play(
 class Motion:
     """The motion of a session, if one runs.
 
-    `following` finds the next step, `now` the state, `show` has changes drawn; what goes wrong is told to `failed`.
+    `following` finds the next step, `now` the state, `show` has changes drawn, `say` has each step's words shown until
+    others come, or none; what goes wrong is told to `failed`.
     """
 
     def __init__(
         self, following: Callable[[Iterator[Step]], Coroutine[Any, Any, Step | None]], now: Callable[[], Params],
-        show: Callable[[Mapping[str, Any]], Coroutine[Any, Any, None]], failed: Callable[[Exception], None],
+        show: Callable[[Mapping[str, Any]], Coroutine[Any, Any, None]], say: Callable[[str], None],
+        failed: Callable[[Exception], None],
     ) -> None:  # fmt: skip
         self._following = following
         self._now = now
         self._show = show
+        self._say = say
         self._failed = failed
         self.reduced = False
         self.task: asyncio.Task[None] | None = None
@@ -81,7 +85,7 @@ class Motion:
         """End a running motion where it is."""
         if self.task is not None:
             self.task.cancel()
-            self.task = None
+            self._ended()
 
     async def _play(self, steps: Iterator[Step]) -> None:
         try:
@@ -89,8 +93,13 @@ class Motion:
                 await self._show(changes)
         except Exception as error:
             self._failed(error)
+        self._ended()
+
+    def _ended(self) -> None:
         self.task = None
+        self._say("")
 
     async def _each(self, steps: Iterator[Step]) -> AsyncIterator[Step]:
         while (step := await self._following(steps)) is not None:
+            self._say(step.words)
             yield step

@@ -56,7 +56,7 @@ class Session:
         self.drawing = Drawing(
             sim, params, self.given, solver, turn, self.telling, lambda: (self.params, self.version), self._not_solved
         )
-        self.motion = Motion(self._following, lambda: self.params, self._show, self._failed)
+        self.motion = Motion(self._following, lambda: self.params, self._show, self.drawing.say, self._failed)
         self._highlight = Highlight(self.telling)
         self._looking_up = LookingUp(solver, turn, self._failed)
         if sim.heavy:
@@ -192,6 +192,11 @@ class Session:
         self.motion.stop()
         self._set(self.params.moved(changes))
 
+    def take(self, found: Any) -> None:
+        """Take what was found in a text of somebody's own. Raises ValueError in words, or pydantic's."""
+        assert self.sim.paste is not None
+        self.change(self.sim.paste.changes(self.params, found), live=False)
+
     def forget(self, known_as: str) -> None:
         """Have the library forget an uploaded file."""
         if self.library is not None:
@@ -276,7 +281,9 @@ class Session:
         return {**self._state(self.drawing.solved), "solution": solution}
 
     def _state(self, params: Params) -> Message:
-        words = "" if self.solution is None else self.sim.describe(self.drawing.solved, self.solution)
+        words = self.drawing.words
+        if not words and self.solution is not None:
+            words = self.sim.describe(self.drawing.solved, self.solution)
         return {
             "type": "state", "version": self.version, "params": params.model_dump(mode="json"),
             "query": params.query(), "text": words,
@@ -302,9 +309,9 @@ class Session:
     def end(self) -> list[asyncio.Task[None]]:
         """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
         self.forget(self.uploaded)
+        self.motion.stop()
         self.telling.end()
         working = self._tasks()
         for task in working:
             task.cancel()
-        self.motion.stop()
         return working

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import Any
 
 from app.rooms.telling import Message
@@ -17,14 +18,19 @@ class Showing:
         self._parts: Parts = {}
         self._values: dict[str, Any] = {}
 
-    def everything(self, params: Params, solution: Any, version: int) -> Message:
+    def everything(self, params: Params, solution: Any, version: int, words: str) -> Message:
         """All of a state, for a page that comes; those that are there have it already."""
-        self.news(params, solution, version)
+        self.news(params, solution, version, words)
         return _message(version, self._values, self._parts)
 
-    def news(self, params: Params, solution: Any, version: int) -> Message:
-        """What differs from what was told last. The version says to which drawing of the scene it belongs."""
+    def news(self, params: Params, solution: Any, version: int, words: str) -> Message:
+        """What differs from what was told last; `words`, where there are any, stand in place of the caption.
+
+        The version says to which drawing of the scene it belongs.
+        """
         parts, values = self._column.of(params, solution)
+        if words:
+            parts["caption"] = escape(words)
         new_parts = {name: html for name, html in parts.items() if self._parts.get(name) != html}
         if PANES in new_parts:  # other frames, which are to be filled
             new_parts |= {name: html for name, html in parts.items() if name.startswith("pane:")}

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from sims.kit import controls, pane, readout
 from sims.kit.offers import Offers
 from sims.kit.params import Params
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Library, Sim, Typed
 from sims.kit.types import Place
 
@@ -118,6 +119,8 @@ class Column:
             inside.append(part(f"control:{name}"))
         if files is not None and title == files.group:
             inside.append(upload(files.endings))
+        if self.sim.paste is not None and title == self.sim.paste.group:
+            inside.append(pasted(self.sim.paste))
         pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
         return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
@@ -138,6 +141,7 @@ class Column:
     def _titles(self) -> list[str]:
         groups = [self.sim.params.kinds[name].group for name in self.sim.params.visible]
         groups += [action.group for action in self.sim.actions]
+        groups += [] if self.sim.paste is None else [self.sim.paste.group]
         return [title for title in dict.fromkeys((*self.sim.folds, *groups)) if title]
 
 
@@ -168,6 +172,19 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
         f"{files}</div>"
+    )
+
+
+def pasted(paste: Paste[Any]) -> str:
+    """A box for a text of one's own, which the page sends."""
+    ask, why = controls.asked("paste", paste.title, paste.about)
+    chooser = f'<input type="file" data-s3-text="" accept="{",".join(paste.endings)}"/>'
+    file = f'<label class="s3-file">From a file{chooser}</label>' if paste.endings else ""
+    return (
+        f'<div class="s3-control s3-paste"><div class="s3-label"><label for="paste">{escape(paste.title)}</label>{ask}'
+        f'</div>{why}<textarea id="paste" rows="4" spellcheck="false" placeholder="{escape(paste.example)}"></textarea>'
+        '<p class="s3-wrong" role="alert" hidden=""></p><div class="s3-actions">'
+        f'<button type="button" data-s3="take">Use this</button>{file}<span role="status"></span></div></div>'
     )
 
 

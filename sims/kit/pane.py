@@ -123,15 +123,11 @@ class Picture:
         selects that.
         """
         x, y = float(at[0]), float(at[1])
-        drawn = (
-            f'<g data-handle="{name}"{_linked(link)} data-x="{x!r}" data-y="{y!r}" tabindex="0"'
-            f' role="application" aria-roledescription="movable point"'
-            f' aria-label="{escape(label)}: {escape(where) or f"{x:.1f}, {y:.1f} pixels"}.'
-            f' Arrow keys move it." transform="translate({x:.3f} {y:.3f})">'
+        mark = (
             f'<circle class="s3-grab" r="{GRAB:g}"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
-            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text></g>'
+            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text>'
         )
-        self._handles.append((x, y, drawn))
+        self._handles.append((x, y, held(name, (x, y), f"{label}: {where or f'{x:.1f}, {y:.1f} pixels'}", mark, link)))
 
     def shows(self, at: Point) -> bool:
         """Whether a place is inside the frame."""
@@ -219,6 +215,16 @@ class Picture:
             near += [point for point in far if abs(point[0] - u) < GRAB > abs(point[1] - v)]
             far = [point for point in far if abs(point[0] - u) >= GRAB or abs(point[1] - v) >= GRAB]
         return [drawn for *_, drawn in (*near, *self._handles, *far)]
+
+
+def held(name: str, at: tuple[float, float], says: str, mark: str, link: str = "") -> str:
+    """A mark, drawn round the origin, that pointer and keyboard move from where it is; `says` what it is, and where."""
+    x, y = at
+    return (
+        f'<g data-handle="{name}"{_linked(link)} data-x="{x!r}" data-y="{y!r}" tabindex="0"'
+        f' role="application" aria-roledescription="movable point" aria-label="{escape(says)}.'
+        f' Arrow keys move it." transform="translate({x:.3f} {y:.3f})">{mark}</g>'
+    )
 
 
 def _linked(link: str) -> str:

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from functools import cached_property
 from html import escape
 
-from sims.kit.pane import Pane
+from sims.kit.pane import Pane, held
 from sims.kit.readout import figure
 
 WIDTH, HEIGHT = 320, 160
 LEFT, TOP, END, FLOOR = 44, 24, 306, 126
 """Ends of the axes, in the picture."""
+GRIP = '<circle class="s3-grab" r="24"/><circle class="s3-ring" r="9"/><circle class="s3-core" r="4"/>'
 
 
 def step(greatest: float, most: int = 6) -> float:
@@ -66,19 +67,33 @@ class Plot:
             f'<text x="4" y="14">{escape(self.y)}</text>{"".join(self._words)}'
         )
 
-    def pane(self, note: str = "", mark: tuple[float, float] | None = None) -> Pane:
-        """The finished plot, with a point marked on it; the note says what and where it is."""
+    def pane(
+        self, note: str = "", mark: tuple[float, float] | None = None, *, handle: str = "", label: str = ""
+    ) -> Pane:
+        """The finished plot, with a point marked on it; the note says what and where it is.
+
+        With the name of a `handle` the mark can be moved: the session hears of the values where it would be. `label`
+        says what it is.
+        """
         dot = ""
         if mark is not None:
             u, v = self.at(*mark)
-            dot = (
-                f'<path d="M{LEFT} {v:.1f}H{u:.1f}V{FLOOR}" class="s3-guide"/>'
-                f'<circle cx="{u:.1f}" cy="{v:.1f}" r="4.5" class="s3-core"/>'
+            dot = f'<path d="M{LEFT} {v:.1f}H{u:.1f}V{FLOOR}" class="s3-guide"/>'
+            dot += (
+                held(handle, (u, v), f"{label}: {note}", GRIP)
+                if handle
+                else f'<circle cx="{u:.1f}" cy="{v:.1f}" r="4.5" class="s3-core"/>'
             )
         words = escape(f"{self.title}: {note}" if note else self.title)
-        frame = f'class="s3-plot" viewBox="0 0 {WIDTH} {HEIGHT}" role="img"'
+        role = f'role="group" {self._axes()}' if handle else 'role="img"'
+        frame = f'class="s3-plot" data-pane="{escape(self.name)}" viewBox="0 0 {WIDTH} {HEIGHT}" {role}'
         svg = f'<svg {frame} aria-label="{words}">{self._drawn}{dot}</svg>'
         return Pane(self.name, self.title, svg, note, wide=True)
+
+    def _axes(self) -> str:
+        """For the page: the values at the picture's corner, and how much of each a pixel is."""
+        x, y = self.x_max / (END - LEFT), self.y_max / (FLOOR - TOP)
+        return f'data-axes="{-LEFT * x!r} {x!r} {FLOOR * y!r} {-y!r}"'
 
     def _grid(self) -> str:
         lines, words = [], []

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sims.kit.offers import Offers
 from sims.kit.pane import Pane
 from sims.kit.params import Params
+from sims.kit.paste import Paste
 from sims.kit.readout import Readout
 from sims.kit.scene.stage import Stage
 
@@ -51,6 +52,8 @@ class Step:
     seconds: float
     even: bool = False
     """At one speed: for the legs of a path that isn't straight, which is eased as a whole."""
+    words: str = ""
+    """What is to be seen in this leg, in a sentence: the caption while it plays."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +178,8 @@ class Sim(Generic[P, S]):
     typed: Sequence[Typed[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
+    paste: Paste[P] | None = None
+    """Text of a person's own that becomes a state."""
     downloads: Mapping[str, Callable[..., bytes]] = field(default_factory=dict)
     """Files that can be had of a state, by name."""
     heavy: bool = False

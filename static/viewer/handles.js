@@ -22,10 +22,12 @@ export class Handles {
   }
 
   moveTo(name, at, pane) {
-    const box = pictured(pane).viewBox.baseVal;
+    const svg = pictured(pane);
+    const box = svg.viewBox.baseVal;
     const x = Math.round(within(at.x, 0, box.width - 1) * 100) / 100;
     const y = Math.round(within(at.y, 0, box.height - 1) * 100) / 100;
-    this.pace.put(`handle ${name}`, { type: "handle", name, x, y });
+    const [x0, dx, y0, dy] = (svg.dataset.axes ?? "0 1 0 1").split(" ").map(Number); // a plot's values, or pixels
+    this.pace.put(`handle ${name}`, { type: "handle", name, x: x0 + dx * x, y: y0 + dy * y });
     return { x, y };
   }
 

@@ -3,7 +3,7 @@ import { column, element, sim } from "./page.js";
 import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
-  constructor(address, words, files, view) {
+  constructor(address, words, files, view, paste) {
     this.address = address;
     this.words = words;
     const does = {
@@ -14,6 +14,7 @@ export class Toolbar {
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.goHome(),
       "give-up": () => files.giveUp(),
+      take: () => paste.take(),
       close: (button) => button.closest("dialog").close(),
     };
     document.addEventListener("click", (event) => {
@@ -21,7 +22,7 @@ export class Toolbar {
       if (event.target.closest?.("[data-act]")?.dataset.act === "reset") view.reset();
     });
     document.addEventListener("keydown", (event) => {
-      if (event.key === "?" && !(event.target.tagName === "INPUT" && event.target.type === "text")) showKeys();
+      if (event.key === "?" && !event.target.matches?.("input[type=text], textarea")) showKeys();
       if (event.key === "Escape") document.querySelector(".s3-full")?.classList.remove("s3-full");
     }, true);
   }

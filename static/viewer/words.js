@@ -10,13 +10,16 @@ export class Words {
     this.live = element("div", { "aria-live": "polite", role: "status", class: "s3-hidden" });
     this.notice = element("div", { role: "alert", class: "s3-notice", hidden: "" });
     this.speaking = 0;
+    this.last = "";
     this.hiding = 0;
   }
 
   speak(text, seen) {
+    this.describe(text, seen);
+    if (text === this.last) return; // what a motion says as it goes on is spoken meanwhile
+    this.last = text;
     clearTimeout(this.speaking);
     this.speaking = setTimeout(() => (this.live.textContent = text), REST);
-    this.describe(text, seen);
   }
 
   describe(text, seen) {

@@ -397,6 +397,40 @@ def test_reduced_motion_steps_instead(monkeypatch: pytest.MonkeyPatch) -> None:
     run(test)
 
 
+@pytest.mark.parametrize("reduced", [False, True])
+def test_a_motion_says_what_is_to_be_seen(reduced: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(motion, "PAUSE", 0.02)
+
+    async def test() -> None:
+        room = Room()
+        heard: list[dict[str, Any]] = []
+        room.session.motion.reduced = reduced
+        room.session.listen(heard.append)
+        room.session.act("explain")
+        await room.moved()
+        await room.drawn()
+        captions = [m["parts"]["caption"] for m in heard if m["type"] == "show" and "caption" in m["parts"]]
+        assert captions == ["Make it grow.", "It grows.", "Now it &lt;rests&gt;.", "Make it grow."]
+
+    run(test)
+
+
+def test_what_a_motion_says_ends_with_it() -> None:
+    async def test() -> None:
+        room = Room()
+        heard: list[dict[str, Any]] = []
+        room.session.listen(heard.append)
+        room.session.act("explain")
+        await asyncio.sleep(0.05)
+        assert room.session.state()["text"] == "It grows."
+        room.session.change({"size": 3})
+        await room.drawn()
+        assert heard[-1]["parts"]["caption"] == "Make it grow."
+        assert room.session.state()["text"] == "Size 3, double 6."
+
+    run(test)
+
+
 def test_a_motion_ends_when_nobody_looks() -> None:
     async def test() -> None:
         room = Room()
@@ -602,7 +636,7 @@ def test_what_a_sim_stumbles_over_is_told_and_the_session_goes_on(
         (lambda c: c.set({"colour": 1}, None), [("colour", "1", "one of: size, kind")]),
         (lambda c: c.set({"size": 5}, 0.0), [("seconds", "0.0", "a number above 0, at most 60")]),
         (lambda c: c.set({"size": 5}, 61), [("seconds", "61", "a number above 0, at most 60")]),
-        (lambda c: c.act("explode"), [("name", '"explode"', "one of: reset, grow, paint, burst")]),
+        (lambda c: c.act("explode"), [("name", '"explode"', "one of: reset, grow, explain, paint, burst")]),
         (lambda c: c.drag("/x", (0.0,)), [("name", '"/x"', "one of: /grip")]),
         (lambda c: c.act("burst"), [("size", "1000.0", "a number from 0 to 100")]),
         (lambda c: c.set({"size": IMPOSSIBLE}, None), [("size", "13.0", "anything but 13")]),

@@ -65,6 +65,12 @@ def grow(_: ToyParams) -> Iterator[Step]:
     yield Step({"size": 100.0}, 0.3)
 
 
+def explain(_: ToyParams) -> Iterator[Step]:
+    yield Step({"size": 5.0}, 0.1, words="It grows.")
+    yield Step({}, 0.1, words="Now it <rests>.")
+    yield Step({"size": 7.0}, 0.1)
+
+
 def paint(params: ToyParams) -> Mapping[str, Any]:
     return {"kind": "blue" if params.kind == "red" else "red"}
 
@@ -87,6 +93,7 @@ def toy(seconds: float = 0.0, *, heavy: bool = False) -> tuple[Sim[Any, Any], So
         view=View((3.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0),
         actions=(
             Action("grow", "Grow", "Slowly", grow),
+            Action("explain", "Explain", "In words", explain),
             Action("paint", "Paint", "The other one", paint),
             Action("burst", "Burst", "Too much", lambda p: {"size": 1000.0}),
         ),

@@ -80,3 +80,15 @@ def test_a_plot_is_well_formed_named_and_alone_in_its_row() -> None:
 
 def test_without_a_point_only_the_curves_are_there() -> None:
     assert "<circle" not in plot().pane().svg
+
+
+def test_a_mark_that_can_be_held_says_its_values() -> None:
+    svg = plot().pane("4.00 m", (4.0, 0.05), handle="depth", label="The point").svg
+    assert not bad_attributes(svg)
+    frame = next(e for e in xml(svg).iter() if e.tag.endswith("svg"))
+    grip = next(e for e in frame.iter() if e.get("data-handle") == "depth")
+    x0, dx, y0, dy = map(float, frame.attrib["data-axes"].split())
+    u, v = (float(grip.attrib[name]) for name in ("data-x", "data-y"))
+    assert (x0 + dx * u, y0 + dy * v) == pytest.approx((4.0, 0.05))
+    assert grip.get("aria-label") == "The point: 4.00 m. Arrow keys move it."
+    assert frame.get("role") == "group", "an image has nothing in it that can be held"
