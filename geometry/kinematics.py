@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import Any, NamedTuple
@@ -209,9 +209,11 @@ class Chain:
 
     def ordered(self, order: Sequence[int]) -> "Chain":
         """Return the arm of these links, counted from 0, in this order."""
-        letters = {name: "".join(getattr(self, name)[i] for i in order) for name in ("axes", "joints")}
-        numbers = ("lengths", "twists", "offsets", "starts")
-        return replace(self, **letters, **{name: tuple(getattr(self, name)[i] for i in order) for name in numbers})
+        def put(numbers: tuple[float, ...]) -> tuple[float, ...]:
+            return tuple(numbers[i] for i in order)
+
+        axes, joints = ("".join(letters[i] for i in order) for letters in (self.axes, self.joints))
+        return Chain(axes, put(self.lengths), put(self.twists), put(self.offsets), put(self.starts), joints)
 
 
 def walk(links: Iterable[Link], angles: Iterable[Any]) -> list[Joint]:

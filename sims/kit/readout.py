@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -163,7 +163,10 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Note | Fold
+class Readout(Protocol):
+    """What stands beside the scene: one of these, or of a sim's own."""
+
+    def html(self) -> str: ...
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:

@@ -1,0 +1,132 @@
+"""The words in the scene: each at its place in the world, and none over another.
+
+A browser draws a label where its own position says at once, and follows the node that it hangs on a frame later: so
+these hang on nothing that moves. Where two would overlap as the arm is looked at first, the less important gives way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from sims.kit.readout import quantity
+from sims.kit.types import Place
+from sims.transform_chain.meshes import AXLE, END
+from sims.transform_chain.params import ChainParams
+from sims.transform_chain.solution import ENOUGH, ChainSolution, Swapped
+from sims.transform_chain.strip import sub
+from sims.transform_chain.views import VIEW, view_of
+
+WIDTH, HEIGHT = 0.027, 0.062
+"""Room that a letter takes, and a line, in radii of the view."""
+LONG = 7
+"""Labels at once at most that aren't a single letter."""
+NAMED = 4
+"""Transforms that are named at most."""
+FORWARD = np.subtract(VIEW.look_at, VIEW.position) / math.dist(VIEW.look_at, VIEW.position)
+RIGHT = np.cross(FORWARD, (0.0, 0.0, 1.0)) / math.hypot(FORWARD[0], FORWARD[1])
+PLANE = np.stack([RIGHT, np.cross(RIGHT, FORWARD)])
+"""From places to where they are seen, to the right and upwards, from the first viewpoint."""
+
+
+class Word(NamedTuple):
+    """What is said, under which name, and where."""
+
+    name: str
+    text: str
+    place: Place
+
+
+def transform_name(show: str, i: int) -> str:
+    """The i-th transform, from 1: T₁₂, or T₀₂ where they are composed."""
+    return f"T{sub(i - 1 if show == 'individual' else 0)}{sub(i)}"
+
+
+def outcome(swapped: Swapped) -> str:
+    """Where the swapped product leads, beside the other."""
+    same_way = swapped.angle < 1e-6
+    if swapped.distance < 1e-9 and same_way:
+        return "the same pose"
+    turned = "turned the same way" if same_way else f"turned by {quantity(swapped.angle, '°', 1)}"
+    return f"{quantity(swapped.distance, 'm', 2)} away, {turned}"
+
+
+def said(p: ChainParams, s: ChainSolution) -> list[Word]:
+    """The words of a state, those left out that would stand over more important ones, or are too many."""
+    radius = view_of(p).radius
+    kept: list[Word] = []
+    boxes: list[tuple[float, float, float]] = []
+    long = 0
+    for word in _wanted(p, s):
+        wide = 0.5 * WIDTH * radius * len(word.text)
+        x, y = (PLANE @ word.place).tolist()
+        more = long + (len(word.text) > 1)
+        if more > LONG or any(abs(x - u) < wide + w and abs(y - v) < HEIGHT * radius for u, v, w in boxes):
+            continue
+        long = more
+        kept.append(word)
+        boxes.append((x, y, wide))
+    return kept
+
+
+def _wanted(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
+    """All that there is to say, the most important first."""
+    yield from _events(p, s)
+    axes = 1.12 * END * s.size
+    for axis, column in zip("xyz", s.end_effector[:3, :3].T, strict=True):
+        yield Word(axis, axis, _off(s.end, axes * column))
+    for axis, column in zip("XYZ", np.eye(3), strict=True):
+        yield Word(f"world_{axis}", axis, _off((0.0, 0.0, 0.0), 1.08 * world(s) * column))
+    for i in _named(p):
+        yield Word(f"T{i}", transform_name(p.show, i), _beside(p, s, i))
+    yield Word("p", "p", _off(s.through[-1, :3], (0.0, 0.0, 0.09)))
+    above = (AXLE + 0.09) * s.size
+    for k, (axis, origin) in enumerate(zip(p.axes, s.positions[:-1], strict=True)):
+        direction = s.composed[k - 1][:3, "xyz".index(axis)] if k else np.eye(3)["xyz".index(axis)]
+        yield Word(f"axis{k + 1}", axis, _off(origin, above * direction))
+
+
+def _events(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
+    if s.short is not None:
+        why = "out of reach" if s.pull_outside else "not reached"
+        yield Word("status", f"⚠ {why}: {quantity(s.short, 'm', 2)} short", _off(s.end, (0.0, 0.0, 0.3 * s.size)))
+    elif s.singular:
+        yield Word("status", "⚠ singular pose", _off(s.end, (0.0, 0.0, 0.3 * s.size)))
+    if p.target is not None and s.target_distance is not None:
+        reached = s.target_distance <= ENOUGH
+        text = "✓ target reached" if reached else f"target {quantity(s.target_distance, 'm', 2)} away"
+        yield Word("target", text, _off(p.target, (0.0, 0.0, 0.18)))
+    if p.swap is not None and s.swapped is not None:
+        pair = f"T{sub(p.swap - 1)}{sub(p.swap)} and T{sub(p.swap)}{sub(p.swap + 1)} swapped"
+        below = -0.2 * s.size
+        yield Word("swapped", pair, _off(s.swapped.end, (0.0, 0.0, below)))
+        next_line = below - 1.2 * HEIGHT * view_of(p).radius
+        yield Word("outcome", outcome(s.swapped), _off(s.swapped.end, (0.0, 0.0, next_line)))
+
+
+def _named(p: ChainParams) -> list[int]:
+    """The transforms that are named: one that is shown alone; all of a short arm; of a long one both ends."""
+    if p.stage is not None:
+        return [p.stage]
+    n = p.count
+    return list(range(n, 0, -1)) if n <= NAMED else [n, 1, n - 1, 2]
+
+
+def _beside(p: ChainParams, s: ChainSolution, i: int) -> Place:
+    """Above the middle of an arrow, or above its frame where it comes from the world."""
+    start, end = s.positions[i - 1], s.positions[i]
+    middle = 0.5 * (start + end) if p.show == "individual" else end
+    return _off(middle, (0.0, 0.0, 0.2 * s.size))
+
+
+def world(s: ChainSolution) -> float:
+    """Length of the world's axes."""
+    return 0.55 * min(s.size, 1.0)
+
+
+def _off(place: object, by: object) -> Place:
+    x, y, z = np.add(place, by).tolist()  # type: ignore[call-overload]
+    return x, y, z
