@@ -31,8 +31,7 @@ def hold_end(p: ChainParams, place: tuple[float, ...]) -> dict[str, Any]:
     chain, start = p.arm, p.moves
     x, y, z = place
     if p.plane is not None:
-        level = chain.forward(start).positions[-1].tolist()
-        x, y, z = (now if axis == p.plane else v for axis, v, now in zip("xyz", place, level, strict=True))
+        x, y, z = (sum(p.offsets) if axis == p.plane else v for axis, v in zip("xyz", place, strict=True))
     found = inverse_kinematics(chain, (x, y, z), start, tolerance=CLOSE)
     moves = found.angles.tolist()
     slides = [p.slides(k) for k in range(p.count)]
