@@ -7,13 +7,14 @@ these hang on nothing that moves. Where two would overlap as the arm is looked a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from geometry.arrays import dot
 from sims.kit.readout import quantity
-from sims.kit.types import Place
+from sims.kit.types import ORIGIN, Place
 from sims.transform_chain.meshes import AXLE, END
 from sims.transform_chain.params import ChainParams
 from sims.transform_chain.solution import ENOUGH, ChainSolution, Swapped
@@ -28,8 +29,10 @@ NAMED = 4
 """Transforms that are named at most."""
 FORWARD = np.subtract(VIEW.look_at, VIEW.position) / math.dist(VIEW.look_at, VIEW.position)
 RIGHT = np.cross(FORWARD, (0.0, 0.0, 1.0)) / math.hypot(FORWARD[0], FORWARD[1])
-PLANE = np.stack([RIGHT, np.cross(RIGHT, FORWARD)])
+PLANE: list[list[float]] = [RIGHT.tolist(), np.cross(RIGHT, FORWARD).tolist()]
 """From places to where they are seen, to the right and upwards, from the first viewpoint."""
+
+UNITS = np.eye(3).tolist()
 
 
 class Word(NamedTuple):
@@ -60,11 +63,12 @@ def said(p: ChainParams, s: ChainSolution) -> list[Word]:
     kept: list[Word] = []
     boxes: list[tuple[float, float, float]] = []
     long = 0
+    high = HEIGHT * radius
     for word in _wanted(p, s):
         wide = 0.5 * WIDTH * radius * len(word.text)
-        x, y = (PLANE @ word.place).tolist()
+        x, y = (dot(axis, word.place) for axis in PLANE)
         more = long + (len(word.text) > 1)
-        if more > LONG or any(abs(x - u) < wide + w and abs(y - v) < HEIGHT * radius for u, v, w in boxes):
+        if more > LONG or any(abs(x - u) < wide + w and abs(y - v) < high for u, v, w in boxes):
             continue
         long = more
         kept.append(word)
@@ -75,36 +79,38 @@ def said(p: ChainParams, s: ChainSolution) -> list[Word]:
 def _wanted(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
     """All that there is to say, the most important first."""
     yield from _events(p, s)
-    axes = 1.12 * END * s.size
-    for axis, column in zip("xyz", s.end_effector[:3, :3].T, strict=True):
-        yield Word(axis, axis, _off(s.end, axes * column))
-    for axis, column in zip("XYZ", np.eye(3), strict=True):
-        yield Word(f"world_{axis}", axis, _off((0.0, 0.0, 0.0), 1.08 * world(s) * column))
+    for axis, column in zip("xyz", s.end_effector[:3, :3].T.tolist(), strict=True):
+        yield Word(axis, axis, _along(s.end, column, 1.12 * END * s.size))
+    for axis, column in zip("XYZ", UNITS, strict=True):
+        yield Word(f"world_{axis}", axis, _along(ORIGIN, column, 1.08 * world(s)))
+    places = s.positions.tolist()
     for i in _named(p):
-        yield Word(f"T{i}", transform_name(p.show, i), _beside(p, s, i))
-    yield Word("p", "p", _off(s.through[-1, :3], (0.0, 0.0, 0.09)))
-    above = (AXLE + 0.09) * s.size
-    for k, (axis, origin) in enumerate(zip(p.axes, s.positions[:-1], strict=True)):
-        direction = s.composed[k - 1][:3, "xyz".index(axis)] if k else np.eye(3)["xyz".index(axis)]
-        yield Word(f"axis{k + 1}", axis, _off(origin, above * direction))
+        above = 0.2 * s.size
+        x, y, z = places[i]
+        a, b, c = places[i - 1] if p.show == "individual" else places[i]
+        yield Word(f"T{i}", transform_name(p.show, i), (0.5 * (a + x), 0.5 * (b + y), 0.5 * (c + z) + above))
+    yield Word("p", "p", _along(s.through[-1, :3].tolist(), UNITS[2], 0.09))
+    for k, axis in enumerate(p.axes):
+        column = s.composed[k - 1][:3, "xyz".index(axis)].tolist() if k else UNITS["xyz".index(axis)]
+        yield Word(f"axis{k + 1}", axis, _along(places[k], column, (AXLE + 0.09) * s.size))
 
 
 def _events(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
     if s.short is not None:
         why = "out of reach" if s.pull_outside else "not reached"
-        yield Word("status", f"⚠ {why}: {quantity(s.short, 'm', 2)} short", _off(s.end, (0.0, 0.0, 0.3 * s.size)))
+        yield Word("status", f"⚠ {why}: {quantity(s.short, 'm', 2)} short", _along(s.end, UNITS[2], 0.3 * s.size))
     elif s.singular:
-        yield Word("status", "⚠ singular pose", _off(s.end, (0.0, 0.0, 0.3 * s.size)))
+        yield Word("status", "⚠ singular pose", _along(s.end, UNITS[2], 0.3 * s.size))
     if p.target is not None and s.target_distance is not None:
         reached = s.target_distance <= ENOUGH
         text = "✓ target reached" if reached else f"target {quantity(s.target_distance, 'm', 2)} away"
-        yield Word("target", text, _off(p.target, (0.0, 0.0, 0.18)))
+        yield Word("target", text, _along(p.target, UNITS[2], 0.18))
     if p.swap is not None and s.swapped is not None:
         pair = f"T{sub(p.swap - 1)}{sub(p.swap)} and T{sub(p.swap)}{sub(p.swap + 1)} swapped"
         below = -0.2 * s.size
-        yield Word("swapped", pair, _off(s.swapped.end, (0.0, 0.0, below)))
+        yield Word("swapped", pair, _along(s.swapped.end, UNITS[2], below))
         next_line = below - 1.2 * HEIGHT * view_of(p).radius
-        yield Word("outcome", outcome(s.swapped), _off(s.swapped.end, (0.0, 0.0, next_line)))
+        yield Word("outcome", outcome(s.swapped), _along(s.swapped.end, UNITS[2], next_line))
 
 
 def _named(p: ChainParams) -> list[int]:
@@ -115,18 +121,11 @@ def _named(p: ChainParams) -> list[int]:
     return list(range(n, 0, -1)) if n <= NAMED else [n, 1, n - 1, 2]
 
 
-def _beside(p: ChainParams, s: ChainSolution, i: int) -> Place:
-    """Above the middle of an arrow, or above its frame where it comes from the world."""
-    start, end = s.positions[i - 1], s.positions[i]
-    middle = 0.5 * (start + end) if p.show == "individual" else end
-    return _off(middle, (0.0, 0.0, 0.2 * s.size))
-
-
 def world(s: ChainSolution) -> float:
     """Length of the world's axes."""
     return 0.55 * min(s.size, 1.0)
 
 
-def _off(place: object, by: object) -> Place:
-    x, y, z = np.add(place, by).tolist()  # type: ignore[call-overload]
+def _along(place: Sequence[float], direction: Sequence[float], amount: float) -> Place:
+    x, y, z = (v + amount * d for v, d in zip(place, direction, strict=True))
     return x, y, z

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from geometry.kinematics import Chain
 from sims.kit.sim import View
 from sims.kit.types import Place
 from sims.transform_chain.params import ChainParams
@@ -24,13 +25,17 @@ ROOM = 1.2
 
 def view_of(p: ChainParams) -> View:
     """The first view of an arm: by its links alone, so that no joint moves it."""
-    reach = sum(link.extent for link in p.arm.links)
+    return _view(p.arm)
+
+
+@lru_cache(maxsize=256)
+def _view(arm: Chain) -> View:
+    reach = sum(link.extent for link in arm.links)
     near = next((part for part in NEARER if reach <= SPARE * part * USUAL), None)
     if near is None:
         return VIEW
-    return replace(
-        VIEW, position=_times(near, VIEW.position), look_at=_times(near, VIEW.look_at), radius=near * VIEW.radius
-    )
+    position, look_at = _times(near, VIEW.position), _times(near, VIEW.look_at)
+    return View(position, look_at, near * VIEW.radius)
 
 
 def _times(factor: float, place: tuple[float, float, float]) -> Place:

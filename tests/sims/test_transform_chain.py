@@ -402,7 +402,7 @@ def test_words_stand_where_they_say_over_nothing_and_hang_on_nothing_that_moves(
     radius = view_of(p).radius
     for k, one in enumerate(kept):
         for other in kept[:k]:
-            x, y = np.abs(PLANE @ np.subtract(one.place, other.place))
+            x, y = np.abs(np.array(PLANE) @ np.subtract(one.place, other.place))
             wide = 0.5 * WIDTH * radius * (len(one.text) + len(other.text))
             assert x >= wide - 1e-9 or y >= HEIGHT * radius - 1e-9, (one, other)
 
