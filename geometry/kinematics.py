@@ -63,7 +63,7 @@ class Joint(NamedTuple):
     y: Components
     z: Components
     end: Components
-    slides: bool
+    kind: str
 
     @property
     def transform(self) -> tuple[Any, ...]:
@@ -74,12 +74,12 @@ class Joint(NamedTuple):
     @property
     def spin(self) -> Components:
         """Angular velocity of what is beyond the joint, for a rate of one."""
-        return (0.0, 0.0, 0.0) if self.slides else self.axis
+        return self.axis if self.kind == "r" else (0.0, 0.0, 0.0)
 
     def velocity(self, point: Components) -> Components:
         """How a point beyond the joint moves as the joint does."""
-        if self.slides:
-            return self.axis
+        if self.kind != "r":
+            return self.axis if self.kind == "p" else (0.0, 0.0, 0.0)
         return cross(self.axis, [p - o for p, o in zip(point, self.origin, strict=True)])
 
 
@@ -91,7 +91,7 @@ class Link(NamedTuple):
     twist: float
     offset: float
     start: float
-    slides: bool
+    kind: str
 
     @property
     def extent(self) -> float:
@@ -106,8 +106,9 @@ class Chain:
 
     axes: "x", "y" or "z" for each joint, as in "zyy"; all "z" are the rows of Denavit and Hartenberg (a, α, d, θ).
     lengths: of each link in metres; a negative one points back. What isn't given is zero: twists (radians), offsets
-    (metres), starts (radians). joints: "r" or "p" for each, as in "rrpr"; all turn where none are given. One that turns
-    has d = offset and θ = start + its angle, one that slides θ = start and d = offset + its way.
+    (metres), starts (radians). joints: "r", "p" or "f" for each, as in "rrpr"; all turn where none are given. One that
+    turns has d = offset and θ = start + its angle, one that slides θ = start and d = offset + its way; one that is
+    fixed has both as they are, whatever its angle.
     Raises GeometryError for no joint, another letter, another number of any of them, or one that isn't finite.
     Source: Denavit and Hartenberg 1955; Siciliano et al. 2009, "Robotics", sec. 2.8.2.
     """
@@ -130,20 +131,19 @@ class Chain:
                 raise GeometryError(name, given, f"{n} of them, one for each axis")
             object.__setattr__(self, name, numbers)
         object.__setattr__(self, "joints", self.joints or "r" * n)
-        if len(self.joints) != n or {*self.joints} - {*"rp"}:
-            raise GeometryError("joints", self.joints, f"{n} letters r or p, one for each axis")
+        if len(self.joints) != n or {*self.joints} - {*"rpf"}:
+            raise GeometryError("joints", self.joints, f"{n} letters r, p or f, one for each axis")
 
     @cached_property
     def links(self) -> tuple[Link, ...]:
         """All that is constant, joint by joint."""
-        slides = [joint == "p" for joint in self.joints]
-        rows = zip(self.axes, self.lengths, self.twists, self.offsets, self.starts, slides, strict=True)
+        rows = zip(self.axes, self.lengths, self.twists, self.offsets, self.starts, self.joints, strict=True)
         return tuple(Link(*row) for row in rows)
 
     @cached_property
     def bare(self) -> bool:
         """Whether all joints turn, and no link has a twist or an offset."""
-        return not any((*self.twists, *self.offsets)) and "p" not in self.joints
+        return not any((*self.twists, *self.offsets)) and {*self.joints} == {"r"}
 
     def forward(self, angles: npt.ArrayLike) -> Posture:
         """Return the posture at joint angles (..., n) in radians; for joints that slide, metres.
@@ -209,6 +209,7 @@ class Chain:
 
     def ordered(self, order: Sequence[int]) -> "Chain":
         """Return the arm of these links, counted from 0, in this order."""
+
         def put(numbers: tuple[float, ...]) -> tuple[float, ...]:
             return tuple(numbers[i] for i in order)
 
@@ -221,19 +222,19 @@ def walk(links: Iterable[Link], angles: Iterable[Any]) -> list[Joint]:
     joints = []
     frame: list[Components] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
     end: Components = (0.0, 0.0, 0.0)
-    for (axis, length, twist, offset, start, slides), angle in zip(links, angles, strict=True):
+    for (axis, length, twist, offset, start, kind), angle in zip(links, angles, strict=True):
         i, j, k = _TURNS[axis]
         along, origin = frame[i], end
         moved: Any = as_angle("angles", angle)
-        way = offset + moved if slides else offset
-        _turn(frame, j, k, start if slides else start + moved)
+        way = offset + moved if kind == "p" else offset
+        _turn(frame, j, k, start + moved if kind == "r" else start)
         x = frame[0]
         end = origin[0] + length * x[0], origin[1] + length * x[1], origin[2] + length * x[2]
-        if slides or offset:
+        if kind == "p" or offset:
             end = end[0] + way * along[0], end[1] + way * along[1], end[2] + way * along[2]
         if twist:
             _turn(frame, 1, 2, twist)
-        joints.append(Joint(along, origin, x, frame[1], frame[2], end, slides))
+        joints.append(Joint(along, origin, x, frame[1], frame[2], end, kind))
     return joints
 
 

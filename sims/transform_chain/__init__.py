@@ -6,8 +6,9 @@ link may also lead along its axis and twist about its x axis, as in the tables o
 
 from __future__ import annotations
 
+from sims.kit.paste import Paste
 from sims.kit.sim import Contract, Objective, Sim, Typed
-from sims.transform_chain import actions
+from sims.transform_chain import actions, own
 from sims.transform_chain.offers import ChainOffers
 from sims.transform_chain.params import MOST, OWN, POINT, ChainParams
 from sims.transform_chain.readouts import FREEDOM, INVERSE, STAGES, caption, describe, readouts
@@ -45,6 +46,12 @@ SIM = Sim(
             "/grip", "End effector", "Turns the joints so that the end effector gets there, as dragging it does",
             (-16.0, -16.0, -16.0), (16.0, 16.0, 16.0), actions.end_place,
         ),
+    ),
+    paste=Paste(
+        OWN, "Your table or URDF",
+        "Rows of Denavit and Hartenberg, a, α, d, θ and r or p (metres and degrees unless you say otherwise, with q for"
+        " what a joint changes), or a robot’s URDF whose joints make one chain, of at most eight links",
+        own.EXAMPLE, own.read, own.changes, (".urdf", ".xml", ".csv", ".txt"),
     ),
     states={
         "one link": {"angles": (50,), "lengths": (1.2,), "axes": "z"},

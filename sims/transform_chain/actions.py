@@ -34,9 +34,11 @@ def hold_end(p: ChainParams, place: tuple[float, ...]) -> dict[str, Any]:
         x, y, z = (sum(p.offsets) if axis == p.plane else v for axis, v in zip("xyz", place, strict=True))
     found = inverse_kinematics(chain, (x, y, z), start, tolerance=CLOSE)
     moves = found.angles.tolist()
-    slides = [p.slides(k) for k in range(p.count)]
-    angles = tuple(a if s else wrapped(math.degrees(m)) for a, m, s in zip(p.angles, moves, slides, strict=True))
-    offsets = tuple(m if s else d for d, m, s in zip(p.offsets, moves, slides, strict=False))
+    kinds = p.joints or "r" * p.count
+    angles = tuple(
+        wrapped(math.degrees(m)) if kind == "r" else a for a, m, kind in zip(p.angles, moves, kinds, strict=True)
+    )
+    offsets = tuple(m if kind == "p" else d for d, m, kind in zip(p.offsets, moves, kinds, strict=False))
     return {"angles": angles, "offsets": offsets, "pull": None if found.reached else (x, y, z), "trace": None}
 
 
@@ -49,6 +51,8 @@ def turned(p: ChainParams, k: int, place: tuple[float, ...]) -> dict[str, Any]:
     """A joint's angle, or its way, at which its grip is nearest to a place in the world."""
     before = p.arm.forward(p.moves).composed[k - 1] if k else np.eye(4)
     own = place_of(before[:3, :3].T @ (np.array(place) - before[:3, 3]))
+    if p.kind(k) == "f":
+        return {}
     if p.slides(k):
         return {f"offsets.{k}": own["xyz".index(p.axes[k])]}
     angle = held_angle(p.axes[k], own)
@@ -98,8 +102,10 @@ def preset(chosen: Preset) -> Callable[[ChainParams], dict[str, Any]]:
 
 def sweep(p: ChainParams) -> Iterator[Step]:
     """A full turn of the joint whose trace is shown, or the first, and back to where it was."""
-    first = next((k for k in range(p.count) if not p.slides(k)), 0)
-    k = first if p.trace is None or p.slides(p.trace - 1) else p.trace - 1
+    turning = [k for k in range(p.count) if p.kind(k) == "r"]
+    if not turning:
+        return
+    k = p.trace - 1 if p.trace is not None and p.trace - 1 in turning else turning[0]
 
     def at(angle: float) -> Mapping[str, Any]:
         return {"angles": (*p.angles[:k], angle, *p.angles[k + 1 :])}
@@ -118,7 +124,7 @@ def new_target(p: ChainParams) -> dict[str, Any]:
     places: list[Place] = []
     for _ in range(12):
         turns = [math.radians(dice.uniform(-100.0, 100.0)) for _ in p.axes]
-        moves = [move if p.slides(k) else turn for k, (move, turn) in enumerate(zip(p.moves, turns, strict=True))]
+        moves = [turn if p.kind(k) == "r" else move for k, (move, turn) in enumerate(zip(p.moves, turns, strict=True))]
         x, y, z = chain.forward(moves).positions[-1].round(3).tolist()
         places.append((x, y, z))
     away = (place for place in places if math.dist(place, now) > 0.25 * sum(map(abs, p.lengths)))

@@ -30,7 +30,7 @@ class Joint:
     """One transform as it is drawn: the frame after a joint and its link, in the frame before."""
 
     axis: str
-    slides: bool
+    kind: str
     length: float
     offset: float
     wxyz: Quaternion
@@ -59,7 +59,8 @@ class Span:
 
 def joint(link: Link, moved: float) -> Joint:
     """A link's transform, its joint moved so many radians or metres."""
-    angle, offset = (link.start, moved) if link.slides else (link.start + moved, link.offset)
+    angle = link.start + moved if link.kind == "r" else link.start
+    offset = link.offset + moved if link.kind == "p" else link.offset
     turn = along(link.axis, math.sin(0.5 * angle))
     wxyz = (math.cos(0.5 * angle), *turn)
     c, s = link.length * math.cos(angle), link.length * math.sin(angle)
@@ -69,7 +70,7 @@ def joint(link: Link, moved: float) -> Joint:
         wxyz = _twisted(wxyz, link.twist)
     position = (x + dx, y + dy, z + dz)
     tail = None if math.hypot(*position) < SHORT else _tail(link, (dx, dy, dz))
-    return Joint(link.axis, link.slides, link.length, offset, wxyz, position, tail)
+    return Joint(link.axis, link.kind, link.length, offset, wxyz, position, tail)
 
 
 def along(axis: str, amount: float) -> Place:
@@ -115,7 +116,7 @@ def circle(axis: str, k: int, posture: Posture) -> Circle:
 
 def hold(link: Link, joint: Joint, moved: float, radius: float) -> Place:
     """Where a joint is held, in the frame before it: beside its link, so far from its axis."""
-    angle = link.start if link.slides else link.start + moved
+    angle = link.start + moved if link.kind == "r" else link.start
     c, s = radius * math.cos(angle), radius * math.sin(angle)
     x, y, z = {"x": (0.0, -s, c), "y": (s, 0.0, c), "z": (s, -c, 0.0)}[link.axis]
     dx, dy, dz = along(link.axis, joint.offset)

@@ -91,6 +91,8 @@ def _wanted(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
         yield Word(f"T{i}", transform_name(p.show, i), (0.5 * (a + x), 0.5 * (b + y), 0.5 * (c + z) + above))
     yield Word("p", "p", _along(s.through[-1, :3].tolist(), UNITS[2], 0.09))
     for k, axis in enumerate(p.axes):
+        if p.kind(k) == "f":
+            continue
         column = s.composed[k - 1][:3, "xyz".index(axis)].tolist() if k else UNITS["xyz".index(axis)]
         yield Word(f"axis{k + 1}", axis, _along(places[k], column, (AXLE + 0.09) * s.size))
 

@@ -59,6 +59,13 @@ def sleeve() -> trimesh.Trimesh:
 
 
 @lru_cache(maxsize=1)
+def flange() -> trimesh.Trimesh:
+    """A disc, where two links are fixed to each other."""
+    disc: trimesh.Trimesh = cylinder(radius=0.07, height=0.06, sections=32)
+    return disc
+
+
+@lru_cache(maxsize=1)
 def post() -> trimesh.Trimesh:
     """A rod from z = 0 to 1: what leads along a joint's axis."""
     return moved(cylinder(radius=0.035, height=1.0, sections=20), (0.0, 0.0, 0.5))

@@ -92,11 +92,11 @@ class ChainParams(Params):
     joints: Annotated[
         str,
         Letters(
-            title="Kinds of joints", labels={"r": "r: turns", "p": "p: slides"}, entry="Joint {} kind", most=MOST,
-            fewest=0, hidden=True,
+            title="Kinds of joints", labels={"r": "r: turns", "p": "p: slides", "f": "f: fixed"},
+            entry="Joint {} kind", most=MOST, fewest=0, hidden=True,
         ),
     ] = ""  # fmt: skip
-    """Which joints turn (revolute) and which slide along their axis (prismatic); all turn where it is absent"""
+    """Which joints turn (revolute), slide along their axis (prismatic) or are fixed; all turn where it is absent"""
     target: Annotated[Place | None, Vector(FAR, FARTHEST, step=0.01, unit="m", title="Target", hidden=True)] = None
     """A place to reach with the end effector; absent is none"""
     pull: Annotated[Place | None, Vector(FAR, FARTHEST, step=0.01, unit="m", title="Pull", hidden=True)] = None
@@ -115,25 +115,35 @@ class ChainParams(Params):
     @property
     def arm(self) -> Chain:
         """The arm, whatever its posture."""
-        turned = zip(self.starts or (0.0,) * self.count, self.angles, self.joints, strict=True) if self.joints else ()
-        starts = tuple(start + (angle if joint == "p" else 0.0) for start, angle, joint in turned) or self.starts
+        starts = self.starts
+        if self.joints:  # what doesn't turn has its angle for good
+            fixed = (0.0 if self.kind(k) == "r" else angle for k, angle in enumerate(self.angles))
+            starts = tuple(map(sum, zip(starts or (0.0,) * self.count, fixed, strict=True)))
         return _arm(self.axes, self.lengths, self.twists, self.offsets, starts, self.joints)
 
     @property
     def moves(self) -> list[float]:
         """How far each joint of the arm has moved: radians, or metres where it slides."""
         turned = [math.radians(angle) for angle in self.angles]
-        return [self.offset(k) if self.slides(k) else turn for k, turn in enumerate(turned)] if self.joints else turned
+        return (
+            [self.offset(k) if self.kind(k) == "p" else turn for k, turn in enumerate(turned)]
+            if self.joints
+            else turned
+        )
 
     @property
     def plane(self) -> str | None:
         """The axis that all joints turn about, where the arm stays in a plane."""
-        flat = len({*self.axes}) == 1 and not any(self.twists) and "p" not in self.joints
+        flat = len({*self.axes}) == 1 and not any(self.twists) and not {*self.joints} - {"r"}
         return self.axes[0] if flat else None
+
+    def kind(self, k: int) -> str:
+        """What the k-th joint, from 0, does: r, p or f."""
+        return self.joints[k] if self.joints else "r"
 
     def slides(self, k: int) -> bool:
         """Whether the k-th joint, from 0, slides."""
-        return self.joints[k : k + 1] == "p"
+        return self.kind(k) == "p"
 
     def offset(self, k: int) -> float:
         """How far the k-th link leads along its joint's axis."""

@@ -75,11 +75,11 @@ def _steps(p: ChainParams, i: int) -> str:
     k, link = i - 1, p.arm.links[i - 1]
     axis, offset = p.axes[k], p.offset(k)
     angle = p.angles[k] + (p.starts[k] if p.starts else 0.0)
-    steps = [] if p.slides(k) and not angle else [f"R{axis}({quantity(angle, '°', 1)})"]
+    steps = [] if p.kind(k) != "r" and not angle else [f"R{axis}({quantity(angle, '°', 1)})"]
     steps += [f"{quantity(offset, 'm', 2)} along {axis}"] if offset or p.slides(k) else []
     steps += [f"{quantity(link.length, 'm', 2)} along x"] if link.length or not p.rows else []
     steps += [f"Rx({quantity(p.twists[k], '°', 1)})"] if link.twist else []
-    return ", then ".join(steps)
+    return ", then ".join(steps) or "nothing"
 
 
 def _rows(p: ChainParams) -> Iterator[Readout]:
@@ -92,13 +92,14 @@ def _rows(p: ChainParams) -> Iterator[Readout]:
     rows = [
         [
             f"{k + 1}", figure(p.lengths[k], 4), figure(twists[k], 1),
-            figure(p.offset(k), 4) + (" ↕" if p.slides(k) else ""), figure(starts[k] + p.angles[k], 1),
+            figure(p.offset(k), 4) + (" ↕" if p.slides(k) else ""),
+            figure(starts[k] + p.angles[k], 1) + (" ↻" if p.kind(k) == "r" else ""),
         ]
         for k in range(p.count)
     ]  # fmt: skip
     head = ["link", "a (m)", "α (°)", "d (m)", "θ (°)"]
     lights = [f"angles.{k}" for k in range(p.count)]
-    yield Table("Denavit–Hartenberg parameters of this arm; ↕ slides", [head, *rows], lights=lights)
+    yield Table("Denavit–Hartenberg parameters of this arm: ↻ turns, ↕ slides", [head, *rows], lights=lights)
 
 
 def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
@@ -182,6 +183,7 @@ def describe(p: ChainParams, s: ChainSolution) -> str:
     turns = ", ".join(
         f"{axis} {figure(p.offset(k), 2)} metres" if p.slides(k) else f"{axis} {figure(p.angles[k], 0)}°"
         for k, axis in enumerate(p.axes)
+        if p.kind(k) != "f"
     )
     x, y, z = (figure(v, 2) for v in s.end)
     pose = "; singular pose" if s.singular else ""

@@ -54,7 +54,7 @@ class Arm:
                 link.draw(joints[k], size * (1.0 - 0.45 * k / max(last, 3)), size, hand=k == last and tool == "x")
                 link.mark(frame=k < last and stage in (None, k + 1, k + 2), arrow=arrows and stage in (None, k + 1))
 
-    def hold(self, places: Sequence[Place], size: float) -> None:
+    def hold(self, places: Sequence[Place | None], size: float) -> None:
         """Grips of the joints, at places in the world."""
         while len(self.grips) < len(places):
             self.grips.append(self._stage.grip(f"/turn{len(self.grips) + 1}", 0.024, halo=2.0))
@@ -82,7 +82,7 @@ class Link:
         self.path = path = f"{parent}/link{number}"
         self._palette = stage.palette
         self._ghost = ghost
-        self._slides = False
+        self._kind = "r"
         opacity = LEVEL if ghost else None
         solid = "ghost" if ghost else stage.palette.solid
         self.joint = stage.mesh(f"{parent}/joint{number}", meshes.bearing(), "ghost", opacity=opacity)
@@ -103,22 +103,22 @@ class Link:
         self.body.pose(UPRIGHT if joint.length > 0.0 else ABOUT, (-math.copysign(taken, joint.length), 0.0, 0.0))
         self.body.scale((max(length, SHORTEST), girth, girth))
         if self.arrow is not None and self.frame is not None:
-            self.joint.color(self._palette.surface(joint.axis))
+            self.joint.color(self._palette.solid if joint.kind == "f" else self._palette.surface(joint.axis))
             self.arrow.thickness(meshes.ARROW * size)
             self.arrow.between(None if joint.tail is None else (joint.tail, ORIGIN))
             self.frame.scale(FRAME * size)
 
     def _draw_joint(self, joint: Joint, girth: float) -> None:
-        if joint.slides != self._slides:
-            self._slides = joint.slides
-            body = meshes.sleeve() if joint.slides else meshes.bearing()
+        if joint.kind != self._kind:
+            self._kind = joint.kind
+            body = {"r": meshes.bearing, "p": meshes.sleeve, "f": meshes.flange}[joint.kind]()
             self.joint.shape(body.vertices, body.faces)
         self.joint.pose(ALONG[joint.axis])
         self.joint.scale(girth)
 
     def _draw_post(self, joint: Joint, girth: float, size: float) -> None:
         """What leads along the joint's axis: of one that slides a rod, as long as ever, that goes along."""
-        if joint.slides:
+        if joint.kind == "p":
             self.post.show(True)
             self.post.pose(UPSIDE_DOWN, (0.0, 0.0, joint.offset))
             self.post.scale((girth, girth, ROD * size))

@@ -78,8 +78,8 @@ class ChainSolution:
     """Axis of the end effector that it points along: x with its link, z of an arm whose last link only turns."""
     spans: tuple[Span | None, ...]
     """The composed transforms, from the world to each frame."""
-    holds: tuple[Place, ...]
-    """Where each joint is held, in the world."""
+    holds: tuple[Place | None, ...]
+    """Where each joint is held, in the world; None for a fixed one."""
     circle: Circle | None
     swapped: Swapped | None
     size: float
@@ -124,18 +124,26 @@ def solve(p: ChainParams) -> ChainSolution:
         tool="z" if p.rows and not chain.lengths[-1] and p.axes[-1] == "z" else "x",
         spans=tuple(span(positions[0], position) for position in positions[1:]),
         holds=_holds(chain, moves, posture, joints, HOLD * size),
-        circle=None if p.trace is None or p.slides(p.trace - 1) else circle(p.axes[p.trace - 1], p.trace - 1, posture),
+        circle=None
+        if p.trace is None or p.kind(p.trace - 1) != "r"
+        else circle(p.axes[p.trace - 1], p.trace - 1, posture),
         swapped=None if swapped is None else swapped[1],
         size=size,
     )
 
 
+def _trace(p: ChainParams, posture: Posture) -> Circle | None:
+    k = -1 if p.trace is None else p.trace - 1
+    return circle(p.axes[k], k, posture) if k >= 0 and p.kind(k) == "r" else None
+
+
 def _holds(
     chain: Chain, moves: Sequence[float], posture: Posture, joints: Sequence[Joint], radius: float
-) -> tuple[Place, ...]:
+) -> tuple[Place | None, ...]:
     frames = [np.eye(4), *posture.composed[:-1]]
     own = map(hold, chain.links, joints, moves, [radius] * len(joints))
-    return tuple(place_of(T[:3, :3] @ place + T[:3, 3]) for T, place in zip(frames, own, strict=True))
+    places = (place_of(T[:3, :3] @ place + T[:3, 3]) for T, place in zip(frames, own, strict=True))
+    return tuple(None if kind == "f" else place for kind, place in zip(chain.joints, places, strict=True))
 
 
 def _freedom(p: ChainParams, chain: Chain, posture: Posture) -> dict[str, Any]:

@@ -143,14 +143,14 @@ def dh_arms(draw: st.DrawFn) -> tuple[Chain, Array]:
 
     chain = Chain(
         draw(st.text("xyz", min_size=n, max_size=n)), many(st.floats(-2.0, 2.0)), many(angles),
-        many(st.floats(-1.0, 1.0)), many(angles), draw(st.text("rp", min_size=n, max_size=n)),
+        many(st.floats(-1.0, 1.0)), many(angles), draw(st.text("rpf", min_size=n, max_size=n)),
     )  # fmt: skip
     return chain, np.array(many(st.floats(-3.0, 3.0)))
 
 
 def whole_link(chain: Chain, i: int, moved: float) -> Array:
     """Rot(axis, θ) · Trans(axis, d) · Trans(x, length) · Rot(x, twist), each factor by SciPy."""
-    turn, way = (0.0, moved) if chain.joints[i] == "p" else (moved, 0.0)
+    turn, way = moved * (chain.joints[i] == "r"), moved * (chain.joints[i] == "p")
     T = link(chain.axes[i], 0.0, chain.starts[i] + turn)
     T = T @ se3.transform(np.eye(3), (chain.offsets[i] + way) * np.eye(3)["xyz".index(chain.axes[i])])
     return T @ se3.transform(np.eye(3), (chain.lengths[i], 0.0, 0.0)) @ link("x", 0.0, chain.twists[i])

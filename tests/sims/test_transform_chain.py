@@ -72,9 +72,16 @@ def dh_arms(draw: st.DrawFn) -> ChainParams:
     return p.changed(
         {
             "lengths": many(-2, 2), "twists": many(-180, 180), "offsets": many(-1, 1), "starts": many(-180, 180),
-            "joints": "".join(draw(st.lists(st.sampled_from("rp"), min_size=p.count, max_size=p.count))),
+            "joints": "".join(draw(st.lists(st.sampled_from("rpf"), min_size=p.count, max_size=p.count))),
         }
     )  # fmt: skip
+
+
+def held_at(p: ChainParams, k: int) -> tuple[float, float, float]:
+    """Where the k-th joint, which isn't fixed, is held."""
+    place = solve(p).holds[k]
+    assert place is not None
+    return place
 
 
 def state(rig: Rig) -> ChainParams:
@@ -195,8 +202,8 @@ def test_circle_is_where_the_end_effector_goes_as_its_joint_turns(p: ChainParams
     if p.trace is None:
         return
     circle = solve(p).circle
-    if p.slides(p.trace - 1):
-        assert circle is None, "it goes straight"
+    if p.kind(p.trace - 1) != "r":
+        assert circle is None, "it goes straight, or nowhere"
         return
     assert circle is not None
     turned = p.moved({f"angles.{p.trace - 1}": angle})
@@ -528,9 +535,13 @@ def test_a_joint_turns_to_where_it_is_held(
 ) -> None:
     """To the side of its plane, and farther out or nearer, a hand means the same angle."""
     k = data.draw(st.integers(0, p.count - 1))
+    if p.kind(k) == "f":
+        assert solve(p).holds[k] is None
+        assert actions.turned(p, k, (1.0, 1.0, 1.0)) == {}
+        return
     if p.slides(k):
         aim = p.moved({f"offsets.{k}": 0.5 * beside})
-        held = p.moved(actions.turned(p, k, solve(aim).holds[k]))
+        held = p.moved(actions.turned(p, k, held_at(aim, k)))
         assert held.offset(k) == pytest.approx(aim.offset(k), abs=1e-9)
         return
     aim = p.moved({f"angles.{k}": angle})
@@ -540,7 +551,7 @@ def test_a_joint_turns_to_where_it_is_held(
         frame[:3, "xyz".index(p.axes[k])],
         frame[:3, 3] + s.joints[k].offset * frame[:3, "xyz".index(p.axes[k])],
     )
-    place = middle + farther * (s.holds[k] - middle) + beside * axis
+    place = middle + farther * (np.array(held_at(aim, k)) - middle) + beside * axis
     held = p.moved(actions.turned(p, k, tuple(place.tolist())))
     assert -180.0 <= held.angles[k] <= 180.0
     assert math.remainder(held.angles[k] - angle, 360.0) == pytest.approx(0.0, abs=1e-6)
@@ -551,7 +562,7 @@ def test_a_joint_is_led_round_and_round_without_a_jump(rig: Rig) -> None:
     rig.show(START)
     before = START.angles[1]
     for turn in range(45, 800, 15):
-        place = solve(START.moved({"angles.1": math.remainder(turn, 360.0)})).holds[1]
+        place = held_at(START.moved({"angles.1": math.remainder(turn, 360.0)}), 1)
         rig.browser.drag("/turn2", place)
         rig.settle()
         p = state(rig)
@@ -564,7 +575,7 @@ def test_a_joint_is_led_round_and_round_without_a_jump(rig: Rig) -> None:
 
 def test_a_sliding_joint_is_pulled_along_its_axis(rig: Rig) -> None:
     rig.show(SLIDING)
-    x, y, z = solve(SLIDING).holds[2]
+    x, y, z = held_at(SLIDING, 2)
     rig.browser.drag("/turn3", (x + 0.3, y - 0.2, z - 0.05))
     rig.settle()
     p = state(rig)
