@@ -111,7 +111,7 @@ def _events(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
         pair = f"T{sub(p.swap - 1)}{sub(p.swap)} and T{sub(p.swap)}{sub(p.swap + 1)} swapped"
         below = -0.2 * s.size
         yield Word("swapped", pair, _along(s.swapped.end, UNITS[2], below))
-        next_line = below - 1.2 * HEIGHT * view_of(p).radius
+        next_line = below - 1.5 * HEIGHT * view_of(p).radius
         yield Word("outcome", outcome(s.swapped), _along(s.swapped.end, UNITS[2], next_line))
 
 
