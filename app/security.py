@@ -76,7 +76,8 @@ class SmallBodies:
             message = await receive()
             received += len(message.get("body", b"")) if message["type"] == "http.request" else 0
             if received > LARGEST_BODY:
-                raise HTTPException(413, f"The body may have {LARGEST_BODY} bytes.")
+                words = f"The body may have {LARGEST_BODY} bytes."
+                raise HTTPException(413, words, {"connection": "close"})  # else the rest is read, for nothing
             return message
 
         await self._app(scope, receiver, send)

@@ -76,6 +76,12 @@ class Camera:
         """Centre of projection −Rᵀt, (3,), in the world."""
         return np.asarray(-self.t.dot(self.R))
 
+    @property
+    def depth_row(self) -> Array:
+        """Row (4,) whose product with a homogeneous world point is its depth in metres."""
+        row: Array = self.T_camera_world[2]
+        return row
+
     @np.errstate(invalid="ignore")
     def to_camera(self, points: npt.ArrayLike) -> Array:
         """Return world points (..., 3) in camera coordinates, in metres."""

@@ -46,7 +46,7 @@ from tests.column import ColumnModel
 from tests.frames import SceneModel, encode_message
 
 ROOT = Path(__file__).resolve().parent.parent
-PATIENCE = 20.0
+PATIENCE = 60.0
 """Seconds after which a test gives up on something that should take a fraction of one."""
 COMPLAINT = re.compile(r"Traceback|never retrieved|never awaited|Exception|Warning|^(ERROR|CRITICAL)\b", re.M)
 T = TypeVar("T")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -17,6 +17,8 @@ from sims.kit.frame import Point, across, border, inside
 
 safe = lru_cache(maxsize=1024)(escape)
 """`escape` for words that come again in each picture."""
+Outline = Sequence[tuple[float, float]]
+"""Corners of a polygon."""
 GRAB = 44.0
 """Pixels round a handle in which it can be taken."""
 
@@ -73,6 +75,12 @@ class Picture:
                 f'<path d="{drawn}" fill="none" stroke="var(--{role})" stroke-width="{width}"{dashed}'
                 ' vector-effect="non-scaling-stroke"/>'
             )
+
+    def areas(self, painted: Iterable[tuple[str, Iterable[Outline]]], *, edges: bool = True) -> None:
+        """Filled polygons, each over those before it: a colour of CSS, and outlines that have it."""
+        drawn = "".join([f'<path fill="{fill}" d="{"".join(map(_outline, outlines))}"/>' for fill, outlines in painted])
+        stroke = ' class="s3-faces"' if edges else ""
+        self._parts.append(f"<g{stroke}>{drawn}</g>" if drawn else "")
 
     def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "", link: str = "") -> None:
         """The line a x + b y + c = 0 across the whole picture."""
@@ -215,6 +223,10 @@ class Picture:
             near += [point for point in far if abs(point[0] - u) < GRAB > abs(point[1] - v)]
             far = [point for point in far if abs(point[0] - u) >= GRAB or abs(point[1] - v) >= GRAB]
         return [drawn for *_, drawn in (*near, *self._handles, *far)]
+
+
+def _outline(corners: Outline) -> str:
+    return f"M{'L'.join(['%.1f %.1f' % (u, v) for u, v in corners])}z"  # noqa: UP031 — half the time of an f-string
 
 
 def held(name: str, at: tuple[float, float], says: str, mark: str, link: str = "") -> str:
