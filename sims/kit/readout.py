@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -184,3 +185,8 @@ def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:
 def render(readouts: Iterable[Readout]) -> str:
     """Read-outs as one piece of HTML, with the titles of folds as headings."""
     return "".join([each.html() for each in readouts])
+
+
+def still(readouts: Iterable[Readout]) -> str:
+    """The same for a page on which nothing in them can be chosen."""
+    return re.sub(r'<input type="radio"[^>]*/>', "", render(readouts))

@@ -92,7 +92,7 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="angles lengths axes show swap",
+    parameters="angles lengths axes show swap stage twists offsets starts joints",
     solution="individual composed end_effector inverse positions swapped_end_effector",
     link="show=composed&angles=30,40,-30.5,90&lengths=1,0.8,0.5,0&axes=zyyx&swap=2",
     state={

@@ -110,10 +110,11 @@ def sweep(p: ChainParams) -> Iterator[Step]:
     def at(angle: float) -> Mapping[str, Any]:
         return {"angles": (*p.angles[:k], angle, *p.angles[k + 1 :])}
 
-    yield Step({"trace": k + 1, "pull": None}, 0.0)
-    yield Step(at(180.0), FULL_TURN * (180.0 - p.angles[k]) / 360.0)
-    yield Step(at(-180.0), 0.0)
-    yield Step(at(p.angles[k]), FULL_TURN * (180.0 + p.angles[k]) / 360.0)
+    words = f"Joint {k + 1} turns once round, and takes the end effector round a circle about its axis."
+    yield Step({"trace": k + 1, "pull": None}, 0.0, words=words)
+    yield Step(at(180.0), FULL_TURN * (180.0 - p.angles[k]) / 360.0, words=words)
+    yield Step(at(-180.0), 0.0, words=words)
+    yield Step(at(p.angles[k]), FULL_TURN * (180.0 + p.angles[k]) / 360.0, words=words)
 
 
 def new_target(p: ChainParams) -> dict[str, Any]:

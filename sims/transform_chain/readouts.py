@@ -22,17 +22,21 @@ def caption(p: ChainParams, s: ChainSolution) -> str:
         return "Bring the end effector to the target, joint by joint, or by dragging its ring."
     if s.singular:
         return "A singular pose: there is a direction in which no joint can move the end effector."
-    return "Turn one joint: everything after it moves as one piece, and only its own transform changes."
+    if p.stage is not None:
+        i = p.stage
+        return f"T{sub(i - 1)}{sub(i)} alone: its columns are the axes and the origin of frame {i}, as frame {i - 1} sees them."
+    return "Pull the ring of a joint: all that follows moves as one piece, and only its own transform changes."
 
 
 def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
-    yield from _status(p, s)
-    yield Strip(list(s.individual), list(s.composed), p.stage)
     n = p.count
+    yield from _warnings(s)
+    yield Strip(list(s.individual), list(s.composed), p.stage)
     yield from _watched(p, s)
     if s.swapped is not None:
         yield from _swapped(p, s)
+    yield from _notes(p, s)
     yield Fold(STAGES)
     words = "From each frame to the next" if p.show == "individual" else "From the world to each frame"
     yield Note(f"{words}:")
@@ -102,7 +106,7 @@ def _rows(p: ChainParams) -> Iterator[Readout]:
     yield Table("Denavit–Hartenberg parameters of this arm: ↻ turns, ↕ slides", [head, *rows], lights=lights)
 
 
-def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
+def _warnings(s: ChainSolution) -> Iterator[Note]:
     if s.short is not None:
         yield Note(_short(s, s.short), "warn")
     if s.mobility == 0:
@@ -114,6 +118,9 @@ def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
         yield Note(f"Singular pose: the joints can move the end effector{ways}{along}.", "warn")
     elif s.near_singular:
         yield Note("Near a singular pose: in one direction the end effector moves only a little.", "near")
+
+
+def _notes(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
     if p.target is not None and s.target_distance is not None:
         reached = "reached" if s.target_distance <= ENOUGH else f"{quantity(s.target_distance, 'm')} away"
         yield Note(f"Target {_place(p.target)} m: {reached}.")

@@ -38,7 +38,7 @@ class Strip:
         every = _radio("", "All transforms", self.stage is None) + "<span>All</span>"
         kind = "s3-strip s3-open" if whole else "s3-strip"
         return (
-            f'<div class="{kind}" role="radiogroup" aria-label="Transforms: show one alone, or all">{cards}'
+            f'<div class="{kind}" role="group" aria-label="Transforms: show one alone, or all">{cards}'
             f'<label class="s3-stage">{every}</label></div>'
         )
 

@@ -483,6 +483,12 @@ def test_the_strip_stands_first_and_shows_each_factor_and_the_product_so_far(rig
     assert "Jacobian" in rig.column.parts["read:Freedom to move"]
 
 
+def test_where_nothing_can_be_chosen_the_strip_has_no_buttons() -> None:
+    html = readout.still(SIM.readouts(START, solve(START)))
+    assert "s3-strip" in html
+    assert "<input" not in html
+
+
 def test_one_transform_alone_is_chosen_in_the_strip(rig: Rig) -> None:
     for start, name in ((START, "individual"), (EIGHT, "composed")):
         rig.show(start.changed({"show": name}))
