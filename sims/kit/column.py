@@ -51,7 +51,7 @@ class Column:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
             for handle, place in places.items():
-                values |= {f"{handle}.{k}": value for k, value in enumerate(place or (None, None, None))}
+                values |= {f"{handle}.{k}": value for k, value in enumerate(_clean(place))}
             values |= {dial.handle: dial.value(params, solution) for dial in self.sim.dials}
         return Shown(parts, values)
 
@@ -169,6 +169,11 @@ class Column:
         groups += [action.group for action in self.sim.actions]
         groups += [] if self.sim.paste is None else [self.sim.paste.group]
         return [title for title in dict.fromkeys((*self.sim.folds, *groups)) if title]
+
+
+def _clean(place: Place | None) -> Sequence[float | None]:
+    """A place that was worked out, without what rounding left of a zero: no −6e-17 in a box."""
+    return (None, None, None) if place is None else [round(v, 12) + 0.0 for v in place]
 
 
 def button(action: Action, *, primary: bool = False) -> str:

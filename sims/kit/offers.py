@@ -49,7 +49,7 @@ class Offers(Generic[P]):
         return self.params.about(name)
 
     def entries(self, name: str) -> Any:
-        """The entries of a list that have a control each."""
+        """The entries of a list, which have a control each; None for a number without one."""
         return getattr(self.params, name)
 
     def entry_label(self, name: str, k: int) -> str:

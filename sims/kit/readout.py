@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
 from itertools import cycle
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -288,7 +289,10 @@ class Fold:
         return f"<h3>{escape(self.title)}</h3>"
 
 
-Readout = Formula | Table | Chain | Note | Lamps | Copied | Fold
+class Readout(Protocol):
+    """What stands beside the scene: one of these, or of a sim's own."""
+
+    def html(self) -> str: ...
 
 
 def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:
@@ -306,3 +310,8 @@ def folded(readouts: Iterable[Readout]) -> dict[str, list[Readout]]:
 def render(readouts: Iterable[Readout]) -> str:
     """Read-outs as one piece of HTML, with the titles of folds as headings."""
     return "".join([each.html() for each in readouts])
+
+
+def still(readouts: Iterable[Readout]) -> str:
+    """The same for a page on which nothing in them can be chosen."""
+    return re.sub(r'<input type="radio"[^>]*/>', "", render(readouts))

@@ -451,8 +451,11 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
         shown = [
             e.get("data-control") for e in xml(rig.column.parts[f"control:{name}"]).iter() if e.get("data-control")
         ]
-        assert shown == [f"{name}.{k}" for k in range(len(sim.offers(params).entries(name)))]
-        assert [rig.column.values[f"{name}.{k}"] for k in range(len(start))] == [*start]
+        entries = sim.offers(params).entries(name)
+        assert shown == [f"{name}.{k}" for k, entry in enumerate(entries) if entry is not None]
+        for k, (entry, value) in enumerate(zip(entries, start, strict=bool(start))):
+            assert entry in (None, value)
+            assert rig.column.values.get(f"{name}.{k}") == entry
     if not start:
         return
     last = len(start) - 1

@@ -100,6 +100,19 @@ class Solid(Node):
             set_property(self.handle, "faces", faces.astype(np.uint32))
 
 
+class Grip(Solid):
+    """A ball that the pointer can drag, with the rings round it."""
+
+    def __init__(self, handle: Any, rings: Sequence[Node]) -> None:
+        super().__init__(handle)
+        self._rings = rings
+
+    def scale(self, factors: float | tuple[float, float, float]) -> None:
+        for node in self._rings:
+            node.scale(factors)
+        super().scale(factors)
+
+
 class Cloud(Node):
     """Many dots, of one colour or each of its own."""
 

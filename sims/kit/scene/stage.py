@@ -18,7 +18,7 @@ import viser
 from sims.kit.palette import AXES, DASHES, RGB, Palette
 from sims.kit.scene import bodies, dragging, view
 from sims.kit.scene.lights import light
-from sims.kit.scene.nodes import HEAD_LENGTH, HEAD_RADIUS, Arrows, Cloud, Label, Lines, Node, Solid, Strokes
+from sims.kit.scene.nodes import HEAD_LENGTH, HEAD_RADIUS, Arrows, Cloud, Grip, Label, Lines, Node, Solid, Strokes
 from sims.kit.scene.pieces import Dash, dashes
 from sims.kit.types import Place, Vector
 
@@ -201,7 +201,7 @@ class Stage:
     def grip(
         self, name: str, radius: float, role: str = "held", *, halo: float = 1.7,
         axis: Callable[[], Vector] | None = None,
-    ) -> Node:  # fmt: skip
+    ) -> Grip:  # fmt: skip
         """A ball that the pointer can drag, with a ring `halo` times as wide; the session hears of it under `name`.
 
         It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One with
@@ -211,10 +211,12 @@ class Stage:
         ring = trimesh.creation.torus(
             major_radius=halo * radius, minor_radius=0.07 * halo * radius, major_sections=48, minor_sections=8
         )
-        for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])]):
+        rings = [
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
+            for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])])
+        ]
         dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
-        return ball
+        return Grip(ball.handle, rings)
 
     def _round(self, axis: Callable[[], Vector]) -> dragging.Path:
         return lambda at, pulled: dragging.on_circle(at, axis(), self.client.camera.position, pulled)
