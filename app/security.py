@@ -8,6 +8,8 @@ from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from sims.kit.paste import LONGEST
+
 
 class Headers:
     """Adds a content security policy (nothing from other hosts) and its companions."""
@@ -49,7 +51,8 @@ class Headers:
         await self._app(scope, receive, sender)
 
 
-LARGEST_BODY = 64 * 1024
+LARGEST_BODY = LONGEST
+"""That of a text of somebody's own; no parameters have more."""
 
 
 class SmallBodies:
@@ -73,7 +76,8 @@ class SmallBodies:
             message = await receive()
             received += len(message.get("body", b"")) if message["type"] == "http.request" else 0
             if received > LARGEST_BODY:
-                raise HTTPException(413, f"The body may have {LARGEST_BODY} bytes.")
+                words = f"The body may have {LARGEST_BODY} bytes."
+                raise HTTPException(413, words, {"connection": "close"})  # else the rest is read, for nothing
             return message
 
         await self._app(scope, receiver, send)

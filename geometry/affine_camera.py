@@ -32,6 +32,11 @@ class AffineCamera:
         flattened[2] = (0.0, 0.0, 0.0, self.depth)
         return self.perspective.K @ flattened / self.depth
 
+    @property
+    def depth_row(self) -> Array:
+        """Row (4,) whose product with a homogeneous world point is its depth in metres."""
+        return self.perspective.depth_row
+
     def project(self, points: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the pixels (..., 2) of world points (..., 3), and their depths (...) along z in metres.
 

@@ -85,6 +85,34 @@ def vanishing_points(P: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array
     return points, pixels
 
 
+def viewpoint(P: npt.ArrayLike) -> Array:
+    """Return from where P (3, 4) looks, homogeneous (4,): its centre with w > 0, or, for an affine camera, a direction.
+
+    That direction points from the things to the camera, w = 0. P has the sign that gives points in front a positive
+    third coordinate. A place is on the side of a plane (a, b, c, d) that its product with it says, in both cases.
+    Source: Hartley and Zisserman 2004, sec. 6.2.1.
+    """
+    (*a, p), (*b, q), (*c, r) = as_finite_array("P", P, 3, 4).tolist()
+    sides = cross(b, c), cross(c, a), cross(a, b)
+    x, y, z = (-p * u - q * v - r * w for u, v, w in zip(*sides, strict=True))
+    return np.array([x, y, z, dot(a, sides[0])])
+
+
+def ground_line(P: npt.ArrayLike) -> tuple[float, float, float]:
+    """Return (a, b, c) with a u + b v + c > 0 for the pixels in which P (3, 4) shows the plane z = 0.
+
+    The rest shows what is above, and 0 is the horizon. P has its sign as for `viewpoint`. For an affine camera a and b
+    are 0: all of its picture shows the plane, or nothing of it.
+    Source: Hartley and Zisserman 2004, sec. 8.6.2.
+    """
+    (*a, _), (*b, _), (*c, _) = as_finite_array("P", P, 3, 4).tolist()
+    (_, _, u), (_, _, v), (_, _, w) = cross(b, c), cross(c, a), cross(a, b)
+    if abs(w) <= _SINGULAR * math.hypot(*a) * math.hypot(*b):
+        w = 0.0
+    below = viewpoint(P).item(2) < 0.0
+    return (u, v, w) if below else (-u, -v, -w)
+
+
 def frame_planes(P: npt.ArrayLike, width: float, height: float) -> Array:
     """Return the half-spaces (4, 4) of the points that P (3, 4) maps into a picture of a size in pixels.
 

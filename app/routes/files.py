@@ -8,12 +8,15 @@ from typing import Any
 
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import JSONResponse, Response
+from pydantic import ValidationError
 
 from app.rooms.keys import room_of
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from app.routes.coming import BUSY, Refusal
 from app.routes.services import Given
+from app.trouble import error_message
+from geometry import GeometryError
 from sims import by_slug
 
 ADDRESS = r"/sims/[a-z-]+/s/[0-9a-f]{20}/[\w-]{1,60}/file$"
@@ -60,6 +63,31 @@ async def upload(request: Request, given: Given, slug: str, room: str, key: str,
         else:
             session.upload(known_as, len(data), changes)
     return JSONResponse({"name": name}, headers=ANYWHERE)
+
+
+@router.options("/sims/{slug}/s/{room}/{key}/paste")
+async def may_paste(slug: str, room: str, key: str) -> Response:
+    return Response(status_code=204, headers=ANYWHERE)
+
+
+@router.post("/sims/{slug}/s/{room}/{key}/paste")
+async def paste(request: Request, given: Given, slug: str, room: str, key: str) -> Response:
+    if (session := _session(given.sessions, slug, room, key)) is None:
+        raise Refusal(404, GONE)
+    if session.sim.paste is None:
+        raise Refusal(404, "This sim takes no text.")
+    try:
+        text = (await request.body()).decode("utf-8-sig")
+        loop = asyncio.get_running_loop()
+        found = await loop.run_in_executor(given.sessions.aside, session.sim.paste.found, text)
+        session.take(found)
+    except UnicodeDecodeError:
+        raise Refusal(422, "This isn’t text in UTF-8. Nothing has changed.") from None
+    except (ValidationError, GeometryError) as error:
+        raise Refusal(422, f"{error_message(session.sim, error)['message']}. Nothing has changed.") from None
+    except ValueError as error:
+        raise Refusal(422, f"{error} Nothing has changed.") from None
+    return JSONResponse({"said": session.sim.paste.says(found)}, headers=ANYWHERE)
 
 
 @router.get("/sims/{slug}/s/{room}/{key}/result/{name}")

@@ -15,6 +15,7 @@ from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
 from sims.kit.palette import DARK
+from sims.kit.paste import LONGEST
 from sims.kit.scene.view import FIELD
 from sims.kit.sim import Sim, View
 
@@ -85,6 +86,7 @@ def viewer(
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
         "files": None if sim.files is None else {"largest": largest},
+        "paste": None if sim.paste is None else {"longest": LONGEST},
         "label": {"ink": DARK.ink, "plate": DARK.page},
         "main": module(request, "main.js"), "client": f"{client}/loader.js",
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},

@@ -64,7 +64,7 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
     """The controls of a parameter, which show its value where they are `filled`."""
     kind = offers.params.kinds[name]
     value = getattr(offers.params, name) if filled else None
-    about = type(offers.params).model_fields[name].description or ""
+    about = offers.about(name)
     label = offers.label(name)
     match kind:
         case fields.Switch():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -17,6 +17,8 @@ from sims.kit.frame import Point, across, border, inside
 
 safe = lru_cache(maxsize=1024)(escape)
 """`escape` for words that come again in each picture."""
+Outline = Sequence[tuple[float, float]]
+"""Corners of a polygon."""
 GRAB = 44.0
 """Pixels round a handle in which it can be taken."""
 
@@ -32,7 +34,9 @@ class Pane:
     wide: bool = False
     """It takes the whole width where pictures stand side by side."""
     large: bool = False
-    """It may be as high as half of the column: for the one picture that all is about."""
+    """It is what the sim is about: the column makes room for it, and the read-outs stand under it, by the controls."""
+    line: str = ""
+    """HTML of a read-out that stands over it."""
 
 
 class Picture:
@@ -76,6 +80,12 @@ class Picture:
                 ' vector-effect="non-scaling-stroke"/>'
             )
 
+    def areas(self, painted: Iterable[tuple[str, Iterable[Outline]]], *, edges: bool = True) -> None:
+        """Filled polygons, each over those before it: a colour of CSS, and outlines that have it."""
+        drawn = "".join([f'<path fill="{fill}" d="{"".join(map(_outline, outlines))}"/>' for fill, outlines in painted])
+        stroke = ' class="s3-faces"' if edges else ""
+        self._parts.append(f"<g{stroke}>{drawn}</g>" if drawn else "")
+
     def homogeneous_line(self, line: Point, role: str, *, width: float = 2, dash: str = "", link: str = "") -> None:
         """The line a x + b y + c = 0 across the whole picture."""
         ends = across(line, self.width, self.height)
@@ -118,16 +128,22 @@ class Picture:
             ' click a place, or press Enter for the middle."'
         )
 
-    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "") -> None:
+    def handle(
+        self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "",
+        corner: tuple[int, int] = (1, -1),
+    ) -> None:  # fmt: skip
         """A point that pointer and keyboard can move; the session hears of it under `name`.
 
         `where` says its place where that isn't the pixel. It is highlighted with what else `link` is, and a click on it
-        selects that.
+        selects that. Its letter stands at a `corner`: to the right (1) or left (-1), below (1) or above (-1).
         """
+        right, down = corner
+        anchor = ' text-anchor="end"' if right < 0 else ""
         x, y = float(at[0]), float(at[1])
         mark = (
             f'<circle class="s3-grab" r="{GRAB:g}"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
-            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text>'
+            f'<text x="{22 * right}" y="{-18 if down < 0 else 38}"{anchor} class="s3-halo" fill="var(--held)"'
+            f' font-size="28">{escape(letter)}</text>'
         )
         self._handles.append((x, y, held(name, (x, y), f"{label}: {where or f'{x:.1f}, {y:.1f} pixels'}", mark, link)))
 
@@ -194,7 +210,7 @@ class Picture:
         other._points, other._handles = [*self._points], [*self._handles]
         return other
 
-    def pane(self, note: str = "", *, wide: bool = False, large: bool = False) -> Pane:
+    def pane(self, note: str = "", *, wide: bool = False, large: bool = False, line: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
@@ -208,7 +224,7 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}{''.join(self._reachable())}</svg>"
         )
-        return Pane(self.name, self.title, svg, note, wide, large)
+        return Pane(self.name, self.title, svg, note, wide, large, line)
 
     def _reachable(self) -> list[str]:
         """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
@@ -217,6 +233,10 @@ class Picture:
             near += [point for point in far if abs(point[0] - u) < GRAB > abs(point[1] - v)]
             far = [point for point in far if abs(point[0] - u) >= GRAB or abs(point[1] - v) >= GRAB]
         return [drawn for *_, drawn in (*near, *self._handles, *far)]
+
+
+def _outline(corners: Outline) -> str:
+    return f"M{'L'.join(['%.1f %.1f' % (u, v) for u, v in corners])}z"  # noqa: UP031 — half the time of an f-string
 
 
 def held(name: str, at: tuple[float, float], says: str, mark: str, link: str = "") -> str:
@@ -235,14 +255,14 @@ def _linked(link: str) -> str:
 
 def figure(pane: Pane) -> str:
     """Where a pane goes."""
-    size = " s3-wide" * pane.wide + " s3-large" * pane.large
-    return f'<figure class="s3-pane{size}" data-part="pane:{escape(pane.name)}"></figure>'
+    kind = "s3-pane" + " s3-wide" * pane.wide + " s3-large" * pane.large
+    return f'<figure class="{kind}" data-part="pane:{escape(pane.name)}"></figure>'
 
 
 def still(pane: Pane) -> str:
-    """Its picture for a page on which nothing can be held: marks that could be are said as places."""
+    """Its picture with the line over it, for a page on which nothing can be held: marks are said as places."""
     svg = re.sub(r' (data-(handle|pick)|tabindex|aria-roledescription)="[^"]*"', "", pane.svg)
-    return (
+    return pane.line + (
         svg.replace('role="application"', 'role="img"')
         .replace('role="button"', 'role="img"')
         .replace(" Arrow keys move it.", "")
@@ -254,4 +274,4 @@ def content(pane: Pane) -> str:
     title = safe(pane.title)
     larger = f'<button type="button" data-s3="enlarge" aria-label="{title}: larger" title="Large or small">⤢</button>'
     note = f"<span> {escape(pane.note)}</span>"
-    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.svg}"
+    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.line}{pane.svg}"

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sims.kit.offers import Offers
 from sims.kit.pane import Pane
 from sims.kit.params import Params
+from sims.kit.paste import Paste
 from sims.kit.readout import Readout
 from sims.kit.scene.stage import Stage
 
@@ -91,6 +92,23 @@ class Typed(Generic[P, S]):
     unit: str = "m"
 
 
+@dataclass(frozen=True)
+class Dial(Generic[P, S]):
+    """A slider for a number that follows from the state; `handle` is told the number, as the only one of its place.
+
+    It shows what `value` finds, and hides where there is none. It is not state: what the handle sets is.
+    """
+
+    handle: str
+    title: str
+    description: str
+    low: float
+    high: float
+    value: Callable[[P, S], float | None]
+    step: float
+    unit: str = ""
+
+
 class Library(Protocol):
     """The files that a server's sessions can show."""
 
@@ -124,7 +142,11 @@ class Files:
 
 @dataclass(frozen=True)
 class View:
-    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
+    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres.
+
+    With radius 0 it is from just there, at every size of the page; the scene then moves the viewpoint itself, by
+    `Stage.look_through`.
+    """
 
     position: tuple[float, float, float]
     look_at: tuple[float, float, float]
@@ -132,6 +154,8 @@ class View:
 
     def holding(self, places: Iterable[npt.ArrayLike]) -> View:
         """The same, or from so many steps farther away that these places are in sight; not those that run away."""
+        if not self.radius:
+            return self
         far = [math.dist(np.asarray(place, dtype=float), self.look_at) / self.radius for place in places]
         farthest = max((distance for distance in far if distance < RUN_AWAY), default=0.0)
         steps = max(0, math.ceil(math.log(max(farthest / SPARE, 1.0), STEP)))
@@ -182,8 +206,12 @@ class Sim(Generic[P, S]):
     clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
     """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
     typed: Sequence[Typed[P, S]] = ()
+    dials: Sequence[Dial[P, S]] = ()
+    """They stand before the other controls."""
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
+    paste: Paste[P] | None = None
+    """Text of a person's own that becomes a state."""
     downloads: Mapping[str, Callable[..., bytes]] = field(default_factory=dict)
     """Files that can be had of a state, by name."""
     heavy: bool = False

@@ -246,7 +246,7 @@ function choose(input, value) {
 
 // Who only watches sees everything and sets nothing.
 function lock() {
-  for (const node of column.querySelectorAll(".s3-controls :is(input, select, [data-act], [data-nudge])")) node.disabled = true;
+  for (const node of column.querySelectorAll(".s3-controls :is(input, select, textarea, [data-act], [data-nudge], [data-s3=take])")) node.disabled = true;
 }
 
 function toggle(ask) {

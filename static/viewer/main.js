@@ -10,6 +10,7 @@ import { Host } from "./host.js";
 import { Pace } from "./pace.js";
 import { sim } from "./page.js";
 import { Parts } from "./parts.js";
+import { Paste } from "./paste.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
 import { View } from "./view.js";
@@ -37,7 +38,8 @@ class Page {
     this.host = new Host(this.channel, this.address);
     this.height = new Height(this.host);
     this.view = new View(this.channel, this.address, () => this.height.tellSoon());
-    this.toolbar = new Toolbar(this.address, this.words, this.files, this.view);
+    this.paste = new Paste(this.words);
+    this.toolbar = new Toolbar(this.address, this.words, this.files, this.view, this.paste);
     this.state = null;
     this.sceneless = false;
     this.does = {

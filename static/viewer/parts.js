@@ -26,6 +26,7 @@ export class Parts {
       const node = column.querySelector(`[data-part="${CSS.escape(name)}"]`);
       if (node) morph(node, html);
     }
+    if (parts.arranged) arrange(parts.arranged.split(" "));
     column.dataset.version = version;
     this.pace.answered();
     this.controls.show(values);
@@ -34,5 +35,16 @@ export class Parts {
     if (!Object.keys(parts).length) return;
     this.handles.drawn();
     this.highlight.show();
+  }
+}
+
+// Controls stand in the order that the state asks for. One that stands right isn't touched: who is in it stays there.
+function arrange(names) {
+  let before = null;
+  for (const name of names) {
+    const node = column.querySelector(`.s3-controls > [data-part="control:${CSS.escape(name)}"]`);
+    if (!node) continue;
+    if (before && before.nextElementSibling !== node) before.after(node);
+    before = node;
   }
 }

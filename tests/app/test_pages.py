@@ -21,7 +21,7 @@ from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
-from tests.server import Server
+from tests.server import PATIENCE, Server
 
 AnySim = Sim[Any, Any]
 PREFIX = "/geo/sim3"
@@ -110,7 +110,7 @@ def server() -> Iterator[Server]:
 
 @pytest.fixture
 def client(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.url, trust_env=False) as client:
+    with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client:
         yield client
 
 
@@ -263,7 +263,10 @@ def test_page_for_a_frame_leaves_out_what_surrounds_it(client: httpx.Client) -> 
 
 
 def test_full_server_says_so_and_offers_to_try_again() -> None:
-    with Server(SIM3_MAX_SESSIONS="1") as server, httpx.Client(base_url=server.url, trust_env=False) as client:
+    with (
+        Server(SIM3_MAX_SESSIONS="1") as server,
+        httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client,
+    ):
         address = f"/sims/{SIM.slug}/embed"
         assert client.get(address, follow_redirects=True).status_code == 200
         answer = client.get(address, follow_redirects=True)

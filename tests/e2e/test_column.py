@@ -153,7 +153,7 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
     mouse.move(x, y)
     mouse.down()
-    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture")):
+    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture onto a corner")):
         mouse.move(x + far, y + far / 4, steps=3)
         learner.until(lambda words=words: words in (learner.frame.locator(".s3-caption").text_content() or ""))  # type: ignore[misc]
         scale = before["width"] / 640
@@ -212,6 +212,10 @@ def test_parts_that_change_keep_the_focus_and_what_is_open(column: Open) -> None
     assert frame.get_by_text("In pixel widths.").is_visible()
 
 
+POSED = ("li", "position pan tilt roll")
+"""The step of a chain to which position and angles lead."""
+
+
 def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) -> None:
     learner = column("camera/embed")
     frame = learner.frame
@@ -220,12 +224,12 @@ def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) ->
         return {(tag, link) for tag, link in frame.evaluate(LIT)}
 
     frame.locator('[data-control="fx"]').hover()
-    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx")})
+    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx"), ("li", "fx fy cx cy skew")})
     frame.locator('mtd[data-link="position"]').first.hover()
-    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position")})
+    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position"), POSED})
     learner.control("slider", "tilt").focus()
     learner.page.mouse.move(5, 5)
-    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll")})
+    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll"), POSED})
 
 
 def test_a_picture_is_enlarged_stays_live_and_goes_back(column: Open) -> None:

@@ -71,6 +71,14 @@ class Stage:
         self._home(position, look_at, radius)
         view.look(self.client.camera, position, look_at, radius)
 
+    def look_through(self, window: view.Window) -> None:
+        """See the scene as through a window; the sim's view of such a state is from the same place, with radius 0."""
+        view.look_through(self.client.camera, window)
+
+    def stand_back(self) -> None:
+        """See the scene upright and as wide as usual again; the sim's view of the state says from where."""
+        view.stand_back(self.client.camera)
+
     def linked(self, name: str, *nodes: Node) -> None:
         """Highlight nodes together with all else that is linked under a name: a control, entries of a matrix."""
         self._linked.setdefault(name, []).extend(nodes)
@@ -189,10 +197,14 @@ class Stage:
         self.mesh(f"{name}/hull", parts["hull"], self.palette.solid if ghost is None else "ghost", opacity=hull)
         self.mesh(f"{name}/mark", parts["mark"], "held", opacity=mark)
 
-    def grip(self, name: str, radius: float, role: str = "held", *, halo: float = 1.7) -> Node:
+    def grip(
+        self, name: str, radius: float, role: str = "held", *, halo: float = 1.7,
+        axis: Callable[[], Vector] | None = None,
+    ) -> Node:  # fmt: skip
         """A ball that the pointer can drag, with a ring `halo` times as wide; the session hears of it under `name`.
 
-        It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
+        It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One with
+        an `axis`, a unit vector through the world's origin, stays on its circle about that.
         """
         ball = self.ball(name, radius, role)
         ring = trimesh.creation.torus(
@@ -200,8 +212,11 @@ class Stage:
         )
         for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])]):
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
-        dragging.listen(ball.handle, partial(self._drag, name))
+        dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return ball
+
+    def _round(self, axis: Callable[[], Vector]) -> dragging.Path:
+        return lambda at, pulled: dragging.on_circle(at, axis(), self.client.camera.position, pulled)
 
     def link(self, node: Node, name: str) -> None:
         """A click on the node selects `name`, as a click on its mark in a picture or its row in a table does."""
