@@ -73,7 +73,10 @@ def test_a_point_of_the_ball_is_scipys_modified_rodrigues_vector(point: Array) -
 def test_points_of_the_ball_are_taken_many_at_once_and_must_be_finite() -> None:
     points = np.array([[0.0, 0, 0], [0.0, 1.0, 0], [0.0, 0, -2.0]])
     np.testing.assert_allclose(
-        hamilton.from_ball(points), [[1, 0, 0, 0], [0, 0, 1, 0], [-0.6, 0, 0, -0.8]], rtol=0, atol=EXACT
+        hamilton.from_ball(points),
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [-0.6, 0.0, 0.0, -0.8]],
+        rtol=0,
+        atol=EXACT,
     )
     with pytest.raises(GeometryError, match="points"):
         hamilton.from_ball([0.0, math.nan, 0.0])
