@@ -23,7 +23,7 @@ from sims.quaternion.params import TWICE, WHOLE, QuaternionParams
 from sims.quaternion.solution import QuaternionSolution
 
 VIEW = View((3.3, -3.0, 2.0), (0.0, 0.0, 0.1), 1.9)
-"""Of the scene, and of the ball."""
+"""How the scene and the ball are looked at."""
 WIDTH, HEIGHT = 480, 430
 RADIUS = 158.0
 """Pixels of the unit ball."""

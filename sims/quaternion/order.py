@@ -27,7 +27,7 @@ class Orders:
     right: Array
     """Where the one is that begins with B."""
     axes: tuple[Array, Array]
-    """Of A and of B, unit."""
+    """The axes of A and B, unit."""
     apart: float
     """Degrees of the turn that leads from the one end to the other."""
 

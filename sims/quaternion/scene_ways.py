@@ -17,7 +17,7 @@ NAMES: dict[Name, str] = {"slerp": "SLERP", "nlerp": "NLERP", "euler": "Euler"}
 BESIDE = 1.32
 """Metres between two neighbours, to the right in the first view."""
 RADIUS = 0.54
-"""Of the sphere round each, which its nose touches."""
+"""Metres from the middle of each to the sphere that its nose touches."""
 SCALE = 0.52
 SPHERE = trimesh.creation.icosphere(subdivisions=4, radius=RADIUS)
 

@@ -1,4 +1,5 @@
 // The controls: what is moved, typed and chosen goes to the server; what it answers is shown.
+import { stepped, text } from "./numbers.js";
 import { column, sim } from "./page.js";
 
 const PAUSE = 900; // milliseconds without a key after which what was typed is finished
@@ -215,22 +216,6 @@ function right(place) {
   const line = place?.querySelector(".s3-wrong");
   if (line) line.hidden = true;
   for (const box of place?.querySelectorAll("[aria-invalid]") ?? []) box.removeAttribute("aria-invalid");
-}
-
-// A hand on a slider means round numbers; its ends are exact.
-function stepped(input) {
-  const [value, low, high, step] = [input.value, input.min, input.max, input.dataset.step].map(Number);
-  if (value <= low || value >= high) return value;
-  const near = Math.round(value / step) * step;
-  return Math.min(Math.max(Number(near.toPrecision(12)), low), high);
-}
-
-// A number as a box shows it: exact up to six digits, with a true minus sign. The server spells it in the same way.
-export function text(value) {
-  if (typeof value !== "number") return value ?? "";
-  const size = Math.abs(value);
-  const spelled = size && (size < 1e-4 || size >= 1e6) ? value.toExponential(5).replace(/\.?0+e/, "e") : `${Number(value.toPrecision(6))}`;
-  return spelled.replace("e+", "e").replaceAll("-", "−");
 }
 
 function tellValue(input, value) {
