@@ -11,15 +11,16 @@ from .errors import GeometryError, as_finite_array, as_number
 from .kinematics import Chain, Joint, walk
 
 _ITERATIONS = 40
-_LONGEST_STEP = 0.5  # radians, of any joint in one iteration
-_SETTLED = 1e-8  # radians
+_LONGEST_STEP = 0.5  # radians or metres, of any joint in one iteration
+_SETTLED = 1e-8  # radians or metres
 _DAMPING = 0.01  # of the most by which the distance bends
 _KICK = 0.2  # radians, off a saddle
 _TINY = float(np.finfo(np.float64).tiny)  # makes 0 / 0 no step
 
 
 class InverseKinematics(NamedTuple):
-    """Joint `angles` (n,) in radians, the `residual` distance to the target in metres, and if that is `reached`."""
+    """Joint `angles` (n,) in radians (metres for joints that slide), the `residual` distance to the target in metres,
+    and if that is `reached`."""
 
     angles: Array
     residual: float
@@ -31,10 +32,11 @@ def inverse_kinematics(
 ) -> InverseKinematics:
     """Return joint angles that bring the end effector within a tolerance, in metres, of a target (3,).
 
-    start (n,) are the angles, in radians, that the search sets out from: it ends near them, and doesn't wrap to ±π.
-    Singular postures are safe, each iteration turns a joint by half a radian at most, and the same input gives the
-    same angles. Out of reach, the angles are those of a nearest point, and `reached` is False. So it is, rarely, for
-    a target within reach: where the way to it leads over a greater distance, or is longer than 40 iterations.
+    start (n,) are the angles, in radians (metres for joints that slide), that the search sets out from: it ends near
+    them, and doesn't wrap to ±π. Singular postures are safe, each iteration turns a joint by half a radian (half a
+    metre) at most, and the same input gives the same angles. Out of reach, the angles are those of a nearest point, and
+    `reached` is False. So it is, rarely, for a target within reach: where the way to it leads over a greater distance,
+    or is longer than 40 iterations.
     Raises GeometryError for numbers that aren't finite or a tolerance that isn't above zero.
     Source: damped least squares, Wampler 1986, "Manipulator inverse kinematic solutions based on vector formulations
     and damped least-squares methods". Where they no longer halve the distance, as out of reach, the error's exact
@@ -61,10 +63,10 @@ def _descend(
     chain: Chain, goal: list[float], angles: list[float], enough: float, *, curved: bool
 ) -> tuple[list[float], float]:
     """Return the nearest angles on the way down, and their distance: without curvature, while steps halve it."""
-    size = sum(map(abs, chain.lengths)) or 1.0
+    size = sum(link.extent for link in chain.links) or 1.0
     nearest, least = angles, math.inf
     for _ in range(_ITERATIONS):
-        joints = walk(zip(chain.axes, chain.lengths, angles, strict=True))
+        joints = walk(chain.links, angles)
         error = [g - e for g, e in zip(goal, joints[-1].end, strict=True)]
         residual = math.hypot(*error)
         going = curved or residual <= 0.5 * least
@@ -84,8 +86,8 @@ def _step(joints: list[Joint], error: list[float], bound: float, curved: bool) -
     Jt = np.array([joint.velocity(joints[-1].end) for joint in joints])
     hessian = Jt @ Jt.T
     if curved:
-        # ∂²p / ∂q_i ∂q_j = a_i × J_j for i ≤ j: the upper triangle, which is all that eigh reads
-        hessian -= np.array([cross(error, joint.axis) for joint in joints]) @ Jt.T
+        # ∂²p / ∂q_i ∂q_j = a_i × J_j for i ≤ j, none where i slides: the upper triangle, which is all that eigh reads
+        hessian -= np.array([cross(error, joint.spin) for joint in joints]) @ Jt.T
     curvature, directions = np.linalg.eigh(hessian, UPLO="U")
     slope = (Jt @ error) @ directions
     along = slope / (np.abs(curvature) + (_DAMPING * bound + _TINY))

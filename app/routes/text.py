@@ -59,7 +59,7 @@ def _finding(sim: Sim[Any, Any], params: Params, library: tuple[Library, ...]) -
         panes = sim.panes(params, solution) if sim.panes is not None else ()
         return {
             "caption": sim.caption(params, solution), "description": sim.describe(params, solution),
-            "readouts": readout.render(sim.readouts(params, solution)),
+            "readouts": readout.still(sim.readouts(params, solution)),
             "panes": [(each.title, each.note, pane.still(each)) for each in panes],
         }  # fmt: skip
 

@@ -40,7 +40,7 @@ def turn_words(p: EulerParams, k: int) -> str:
 
 
 def arc(k: int) -> Handle:
-    """The end of the k-th arc was led to a place in the world: the turn goes as far, by less than half a turn."""
+    """The end of the k-th arc was led to a place in the world: the turn goes as far, at most half round at once."""
 
     def pull(p: EulerParams, place: Place) -> Mapping[str, Any]:
         along, across, _ = arc_frames(p)[k].T @ place

@@ -51,8 +51,7 @@ def values(offers: AnyOffers) -> dict[str, Shown]:
                 if kind.presets:
                     found[f"{name}:preset"] = next((w for w, v in kind.presets.items() if v == value), "")
             case fields.Numbers() | fields.Letters():
-                for k, entry in enumerate(offers.entries(name)):
-                    found[f"{name}.{k}"] = entry
+                found |= {f"{name}.{k}": entry for k, entry in enumerate(offers.entries(name)) if entry is not None}
             case fields.Switch() | fields.Slider() | fields.NumberBox():
                 found[name] = value
             case _:
@@ -82,6 +81,8 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
                 offers.params.regions().get(name, ()),
             )  # fmt: skip
             return control(name, label, inside, about, kind="s3-line", target=f"s-{name}")
+        case fields.Opened():
+            return ""  # the folds are its control
         case fields.NumberBox():
             inside = box(name, label, value, kind.unit, offers.increment(name), steps=True)
             return control(name, label, inside, about, kind="s3-one", target=f"b-{name}")
@@ -225,6 +226,8 @@ def _choice(offers: AnyOffers, name: str, label: str, chosen: str | None, about:
 def _entries(offers: AnyOffers, name: str, kind: fields.Numbers, filled: bool, about: str) -> Iterator[str]:
     defaults = type(offers.params).model_fields[name].default
     for k, value in enumerate(offers.entries(name)):
+        if value is None:
+            continue
         entry, label = f"{name}.{k}", offers.entry_label(name, k)
         default = defaults[k] if k < len(defaults) else None
         at = value if filled else None

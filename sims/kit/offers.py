@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, Generic, TypeVar
 
 from sims.kit.params import Params
@@ -23,6 +23,10 @@ class Offers(Generic[P]):
     def form(self) -> tuple[Any, ...]:
         """All that labels, bounds and marks depend on."""
         return self.params.form()
+
+    def idle(self) -> Collection[str]:
+        """Names of the controls and buttons that mean nothing in this state, as its `form` says: they aren't shown."""
+        return ()
 
     def bounds(self, name: str) -> tuple[float, float]:
         """Least and greatest value that a control goes to."""
@@ -45,7 +49,7 @@ class Offers(Generic[P]):
         return self.params.about(name)
 
     def entries(self, name: str) -> Any:
-        """The entries of a list that have a control each."""
+        """The entries of a list, which have a control each; None for a number without one."""
         return getattr(self.params, name)
 
     def entry_label(self, name: str, k: int) -> str:

@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from geometry.inverse_kinematics import inverse_kinematics
-from geometry.kinematics import Chain
 from sims.kit.sim import Action, Step
-from sims.transform_chain.params import MOST, ChainParams, Place
+from sims.transform_chain.drawing import held_angle, place_of
+from sims.transform_chain.params import LISTS, MOST, ROWS, ChainParams, Place
+from sims.transform_chain.presets import PRESETS, Preset
 from sims.transform_chain.solution import ChainSolution
 
+PLAIN: Mapping[str, Any] = {"twists": (), "offsets": (), "starts": (), "joints": ""}
+"""What links have besides axis, angle and length, where they have none of it."""
 NEW_LINK = ("y", 0.0, 0.4)
 """Axis, angle and length of a link that is added."""
 CLOSE = 1e-8
@@ -22,69 +26,44 @@ FULL_TURN = 2.8
 """Seconds of a sweep."""
 
 
-@dataclass(frozen=True)
-class Preset:
-    """A known arm, as near as links Rot(axis, angle) · Trans(length, 0, 0) come to it, and what they leave out."""
-
-    name: str
-    label: str
-    axes: str
-    lengths: tuple[float, ...]
-    angles: tuple[float, ...]
-    says: str
-    slides: int | None = None
-    """Index of the link whose length stands for a sliding joint."""
-
-    def is_that(self, p: ChainParams) -> bool:
-        """Whether an arm is this one, in any posture."""
-        return p.axes == self.axes and all(
-            a == b or k == self.slides for k, (a, b) in enumerate(zip(p.lengths, self.lengths, strict=True))
-        )
-
-
-# The published lengths, in metres, of an Adept Cobra s800 (both links, and its stroke) and an ABB IRB 1600-6/1.45.
-PRESETS = (
-    Preset(
-        "planar-2r", "Planar 2R arm", "zz", (1.0, 0.8), (30.0, 60.0),
-        "Planar 2R arm: both joints turn about z, so the arm stays in the plane z = 0.",
-    ),
-    Preset(
-        "planar-3r", "Planar 3R arm", "zzz", (1.0, 0.8, 0.5), (20.0, 50.0, 40.0),
-        "Planar 3R arm: the third joint leaves the end effector a choice of direction at every place.",
-    ),
-    Preset(
-        "scara", "SCARA arm", "zzyx", (0.425, 0.375, 0.15, 0.0), (-20.0, 70.0, 90.0, 0.0),
-        "SCARA arm with the link lengths of an Adept Cobra s800. Its third joint slides; here joint 3 stays at 90°, and"
-        " link 3’s length (0 to 0.21 m) is the slide. No turn moves the end effector up or down, so every pose is"
-        " singular. The height of its column is left out.",
-        slides=2,
-    ),
-    Preset(
-        "six-axis", "Six-axis arm", "zyyxyx",
-        (0.15, 0.7, 0.6, 0.0, 0.0, 0.065), (30.0, -60.0, 80.0, 0.0, 40.0, 0.0),
-        "Six-axis arm with the link lengths of an ABB IRB 1600-6/1.45: shoulder 0.15, upper arm 0.7, forearm 0.6,"
-        " flange 0.065 m; the last three axes meet. Left out: the height of its column, which isn’t along x.",
-    ),
-)  # fmt: skip
-
-
-def known(p: ChainParams) -> Preset | None:
-    """The preset that an arm is."""
-    return next((preset for preset in PRESETS if preset.is_that(p)), None)
-
-
 def hold_end(p: ChainParams, place: tuple[float, ...]) -> dict[str, Any]:
     """Angles that bring the end effector to a place, or as near as they get; an arm in a plane stays in it."""
-    x, y, z = (0.0 if {axis} == {*p.axes} else v for axis, v in zip("xyz", place, strict=True))
-    start = [math.radians(a) for a in p.angles]
-    found = inverse_kinematics(Chain(p.axes, p.lengths), (x, y, z), start, tolerance=CLOSE)
-    angles = tuple(wrapped(math.degrees(a)) for a in found.angles.tolist())
-    return {"angles": angles, "pull": None if found.reached else (x, y, z), "trace": None}
+    chain, start = p.arm, p.moves
+    x, y, z = place
+    if p.plane is not None:
+        x, y, z = (sum(p.offsets) if axis == p.plane else v for axis, v in zip("xyz", place, strict=True))
+    found = inverse_kinematics(chain, (x, y, z), start, tolerance=CLOSE)
+    moves = found.angles.tolist()
+    kinds = p.joints or "r" * p.count
+    angles = tuple(
+        wrapped(math.degrees(m)) if kind == "r" else a for a, m, kind in zip(p.angles, moves, kinds, strict=True)
+    )
+    offsets = tuple(m if kind == "p" else d for d, m, kind in zip(p.offsets, moves, kinds, strict=False))
+    return {"angles": angles, "offsets": offsets, "pull": None if found.reached else (x, y, z), "trace": None}
+
+
+def hold_joint(k: int) -> Callable[[ChainParams, tuple[float, ...]], dict[str, Any]]:
+    """What dragging the grip of the k-th joint, from 0, does: it turns, or slides, to where the grip would be."""
+    return lambda p, place: turned(p, k, place) if k < p.count else {}
+
+
+def turned(p: ChainParams, k: int, place: tuple[float, ...]) -> dict[str, Any]:
+    """A joint's angle, or its way, at which its grip is nearest to a place in the world."""
+    before = p.arm.forward(p.moves).composed[k - 1] if k else np.eye(4)
+    own = place_of(before[:3, :3].T @ (np.array(place) - before[:3, 3]))
+    if p.kind(k) == "f":
+        return {}
+    if p.slides(k):
+        return {f"offsets.{k}": own["xyz".index(p.axes[k])]}
+    angle = held_angle(p.axes[k], own)
+    if angle is None:
+        return {}
+    return {f"angles.{k}": wrapped(math.degrees(angle - p.arm.links[k].start))}
 
 
 def wrapped(degrees: float) -> float:
-    """The same direction within ±180°."""
-    return degrees if -180.0 <= degrees <= 180.0 else math.remainder(degrees, 360.0)
+    """The same direction within ±180°, without what rounding leaves of a zero."""
+    return round(degrees if -180.0 <= degrees <= 180.0 else math.remainder(degrees, 360.0), 9) + 0.0
 
 
 def end_place(p: ChainParams, s: ChainSolution) -> Place:
@@ -92,55 +71,64 @@ def end_place(p: ChainParams, s: ChainSolution) -> Place:
     return s.end
 
 
-def with_arm(p: ChainParams, axes: str, lengths: tuple[float, ...], angles: tuple[float, ...]) -> dict[str, Any]:
-    """Changes to another arm; a swap or trace of joints that it hasn't goes."""
-    n = len(axes)
-    kept = {"swap": p.swap if p.swap and p.swap < n else None, "trace": p.trace if p.trace and p.trace <= n else None}
-    return {"axes": axes, "lengths": lengths, "angles": angles, "pull": None, **kept}
+def with_arm(p: ChainParams, **arm: Any) -> dict[str, Any]:
+    """Changes to another arm; what is said of joints that it hasn't goes."""
+    n = len(arm["axes"])
+    kept = {"swap": p.swap if p.swap and p.swap < n else None}
+    kept |= {name: at if (at := getattr(p, name)) and at <= n else None for name in ("trace", "stage")}
+    return {**PLAIN, "pull": None, **arm, **kept}
 
 
 def add_link(p: ChainParams) -> dict[str, Any]:
     """One link more at the end."""
     if p.count == MOST:
         return {}
+    more = {"twists": (0.0,), "offsets": (0.0,), "starts": (0.0,), "joints": "r"}
+    rows = {name: value + more[name] for name in ROWS if (value := getattr(p, name))}
     axis, angle, length = NEW_LINK
-    return with_arm(p, p.axes + axis, (*p.lengths, length), (*p.angles, angle))
+    return with_arm(p, axes=p.axes + axis, lengths=(*p.lengths, length), angles=(*p.angles, angle), **rows)
 
 
 def remove_link(p: ChainParams) -> dict[str, Any]:
     """Without the last link."""
-    return with_arm(p, p.axes[:-1], p.lengths[:-1], p.angles[:-1]) if p.count > 1 else {}
+    return with_arm(p, **{name: getattr(p, name)[:-1] for name in (*LISTS, *ROWS)}) if p.count > 1 else {}
 
 
 def preset(chosen: Preset) -> Callable[[ChainParams], dict[str, Any]]:
     """The action that makes a known arm."""
-    return lambda p: with_arm(p, chosen.axes, chosen.lengths, chosen.angles)
+    arm = {name: getattr(chosen, name) for name in (*LISTS, "twists", "offsets", "joints")}
+    return lambda p: with_arm(p, **arm)
 
 
 def sweep(p: ChainParams) -> Iterator[Step]:
     """A full turn of the joint whose trace is shown, or the first, and back to where it was."""
-    k = (p.trace or 1) - 1
+    turning = [k for k in range(p.count) if p.kind(k) == "r"]
+    if not turning:
+        return
+    k = p.trace - 1 if p.trace is not None and p.trace - 1 in turning else turning[0]
 
     def at(angle: float) -> Mapping[str, Any]:
         return {"angles": (*p.angles[:k], angle, *p.angles[k + 1 :])}
 
-    yield Step({"trace": k + 1, "pull": None}, 0.0)
-    yield Step(at(180.0), FULL_TURN * (180.0 - p.angles[k]) / 360.0)
-    yield Step(at(-180.0), 0.0)
-    yield Step(at(p.angles[k]), FULL_TURN * (180.0 + p.angles[k]) / 360.0)
+    words = f"Joint {k + 1} turns once round, and takes the end effector round a circle about its axis."
+    yield Step({"trace": k + 1, "pull": None}, 0.0, words=words)
+    yield Step(at(180.0), FULL_TURN * (180.0 - p.angles[k]) / 360.0, words=words)
+    yield Step(at(-180.0), 0.0, words=words)
+    yield Step(at(p.angles[k]), FULL_TURN * (180.0 + p.angles[k]) / 360.0, words=words)
 
 
 def new_target(p: ChainParams) -> dict[str, Any]:
     """A place that some posture reaches, well away from the end effector; each leads to the next one."""
-    chain = Chain(p.axes, p.lengths)
-    now = chain.forward([math.radians(a) for a in p.angles]).positions[-1].tolist()
+    chain = p.arm
+    now = chain.forward(p.moves).positions[-1].tolist()
     dice = random.Random(repr((p.axes, p.lengths, p.target)))
     places: list[Place] = []
     for _ in range(12):
-        posture = chain.forward([math.radians(dice.uniform(-100.0, 100.0)) for _ in p.axes])
-        x, y, z = posture.positions[-1].round(3).tolist()
+        turns = [math.radians(dice.uniform(-100.0, 100.0)) for _ in p.axes]
+        moves = [turn if p.kind(k) == "r" else move for k, (move, turn) in enumerate(zip(p.moves, turns, strict=True))]
+        x, y, z = chain.forward(moves).positions[-1].round(3).tolist()
         places.append((x, y, z))
-    away = (place for place in places if math.dist(place, now) > 0.25 * sum(p.lengths))
+    away = (place for place in places if math.dist(place, now) > 0.25 * sum(map(abs, p.lengths)))
     return {"target": next(away, places[0])}
 
 

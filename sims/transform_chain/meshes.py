@@ -17,6 +17,13 @@ GRIPPER = 0.2
 AXLE = 0.19
 """Half the length of a joint's axle."""
 
+END = 0.42
+"""Length of the axes of the end effector's frame."""
+ARROW = 0.013
+"""Radius of an arrow's shaft."""
+AXES = np.stack([np.zeros((3, 3)), np.eye(3)], axis=1)
+"""Tails and tips of a frame's axes."""
+
 
 @lru_cache(maxsize=1)
 def link() -> trimesh.Trimesh:
@@ -41,6 +48,27 @@ def bearing() -> trimesh.Trimesh:
     ring = annulus(r_min=0.082, r_max=0.12, height=0.1, sections=40)
     axle = cylinder(radius=0.014, height=2.0 * AXLE, sections=16)
     return joined([ring, axle])
+
+
+@lru_cache(maxsize=1)
+def sleeve() -> trimesh.Trimesh:
+    """The square sleeve of a joint that slides along z: four walls, open at both ends."""
+    wall = [box((0.2, 0.035, 0.17)), box((0.035, 0.13, 0.17))]
+    places = ((0.0, 0.0825, 0.0), (0.0, -0.0825, 0.0)), ((0.0825, 0.0, 0.0), (-0.0825, 0.0, 0.0))
+    return joined([moved(each.copy(), at) for each, ends in zip(wall, places, strict=True) for at in ends])
+
+
+@lru_cache(maxsize=1)
+def flange() -> trimesh.Trimesh:
+    """A disc, where two links are fixed to each other."""
+    disc: trimesh.Trimesh = cylinder(radius=0.07, height=0.06, sections=32)
+    return disc
+
+
+@lru_cache(maxsize=1)
+def post() -> trimesh.Trimesh:
+    """A rod from z = 0 to 1: what leads along a joint's axis."""
+    return moved(cylinder(radius=0.035, height=1.0, sections=20), (0.0, 0.0, 0.5))
 
 
 @lru_cache(maxsize=1)

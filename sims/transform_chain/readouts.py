@@ -5,25 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
-from sims.transform_chain.actions import known
-from sims.transform_chain.params import MOST, POINT, ChainParams
+from sims.transform_chain.labels import outcome
+from sims.transform_chain.params import MOST, OWN, POINT, ChainParams
+from sims.transform_chain.presets import known
 from sims.transform_chain.solution import ENOUGH, ChainSolution
-
-SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
-AXES = ("x", "y", "z")
-
-
-def sub(number: int) -> str:
-    """A number as a subscript."""
-    return str(number).translate(SUBSCRIPTS)
-
-
-def transform_name(show: str, i: int) -> str:
-    """The i-th transform, from 1: T₁₂, or T₀₂ where they are composed."""
-    return f"T{sub(i - 1 if show == 'individual' else 0)}{sub(i)}"
-
+from sims.transform_chain.strip import AXES, Strip, linked, sub
 
 STAGES, FREEDOM, INVERSE = "The transforms, one by one", "Freedom to move", "The inverse"
 
@@ -36,38 +22,92 @@ def caption(p: ChainParams, s: ChainSolution) -> str:
         return "Bring the end effector to the target, joint by joint, or by dragging its ring."
     if s.singular:
         return "A singular pose: there is a direction in which no joint can move the end effector."
-    return "Turn one joint: everything after it moves as one piece, and only its own transform changes."
+    if p.stage is not None:
+        i = p.stage
+        name = f"T{sub(i - 1)}{sub(i)}"
+        return f"{name} alone: its columns are the axes and the origin of frame {i}, as frame {i - 1} sees them."
+    return "Pull the ring of a joint: all that follows moves as one piece, and only its own transform changes."
 
 
 def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
-    yield from _status(p, s)
     n = p.count
-    product = "".join(f"T{sub(i)}{sub(i + 1)}" for i in range(n))
-    yield Formula(f"World from end effector: {product}", symbol("T", f"0{n}"), mathml(s.end_effector, roles=AXES))
+    yield from _warnings(s)
+    yield Strip(list(s.individual), list(s.composed), p.stage)
+    yield from _watched(p, s)
     if s.swapped is not None:
         yield from _swapped(p, s)
+    yield from _notes(p, s)
     yield Fold(STAGES)
     words = "From each frame to the next" if p.show == "individual" else "From the world to each frame"
     yield Note(f"{words}:")
     for i, T in enumerate(s.individual if p.show == "individual" else s.composed, start=1):
-        what = (
-            f"R{p.axes[i - 1]}({quantity(p.angles[i - 1], '°', 1)}), then {quantity(p.lengths[i - 1], 'm', 2)} along x"
-        )
-        if p.show == "composed":
-            what = "".join(f"T{sub(k)}{sub(k + 1)}" for k in range(i))
+        what = _steps(p, i) if p.show == "individual" else _product(i)
         name = symbol("T", f"{i - 1 if p.show == 'individual' else 0}{i}")
-        yield Formula(what, name, mathml(T, roles=AXES), link=f"angles.{i - 1} lengths.{i - 1} axes.{i - 1}")
+        yield Formula(what, name, mathml(T, roles=AXES), link=linked(i))
     yield Fold(INVERSE)
     yield Formula("End effector from world: its inverse (Rᵀ, −Rᵀt)", symbol("T", f"{n}0"), mathml(s.inverse))
     yield Fold(POINT)
     yield _through(s)
     yield from _kept(s)
     yield Fold(FREEDOM)
-    yield from _freedom(s)
+    yield from _freedom(p, s)
+    yield Fold(OWN)
+    yield from _rows(p)
 
 
-def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
+def _product(i: int) -> str:
+    return "".join(f"T{sub(k)}{sub(k + 1)}" for k in range(i))
+
+
+def _watched(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
+    """The pose of the end effector; of a link that is shown alone, its transform and the product up to it."""
+    n = p.count
+    if p.stage is None:
+        yield Formula(
+            f"World from end effector: {_product(n)}", symbol("T", f"0{n}"), mathml(s.end_effector, roles=AXES)
+        )
+        return
+    i = p.stage
+    own = mathml(s.individual[i - 1], roles=AXES)
+    yield Formula(_steps(p, i), symbol("T", f"{i - 1}{i}"), own, link=linked(i))
+    if i > 1:
+        yield Formula(f"{_product(i)}: up to here", symbol("T", f"0{i}"), mathml(s.composed[i - 1], roles=AXES))
+
+
+def _steps(p: ChainParams, i: int) -> str:
+    """In words: what a link's transform does, one thing after the other."""
+    k, link = i - 1, p.arm.links[i - 1]
+    axis, offset = p.axes[k], p.offset(k)
+    angle = p.angles[k] + (p.starts[k] if p.starts else 0.0)
+    steps = [] if p.kind(k) != "r" and not angle else [f"R{axis}({quantity(angle, '°', 1)})"]
+    steps += [f"{quantity(offset, 'm', 2)} along {axis}"] if offset or p.slides(k) else []
+    steps += [f"{quantity(link.length, 'm', 2)} along x"] if link.length or not p.rows else []
+    steps += [f"Rx({quantity(p.twists[k], '°', 1)})"] if link.twist else []
+    return ", then ".join(steps) or "nothing"
+
+
+def _rows(p: ChainParams) -> Iterator[Readout]:
+    """The arm as a table of Denavit and Hartenberg, where it is one."""
+    if {*p.axes} != {"z"}:
+        yield Note("A table of Denavit and Hartenberg describes arms whose axes are all z, with twists between them.")
+        return
+    zeros = (0.0,) * p.count
+    twists, starts = p.twists or zeros, p.starts or zeros
+    rows = [
+        [
+            f"{k + 1}", figure(p.lengths[k], 4), figure(twists[k], 1),
+            figure(p.offset(k), 4) + (" ↕" if p.slides(k) else ""),
+            figure(starts[k] + p.angles[k], 1) + (" ↻" if p.kind(k) == "r" else ""),
+        ]
+        for k in range(p.count)
+    ]  # fmt: skip
+    head = ["link", "a (m)", "α (°)", "d (m)", "θ (°)"]
+    lights = [f"angles.{k}" for k in range(p.count)]
+    yield Table("Denavit–Hartenberg parameters of this arm: ↻ turns, ↕ slides", [head, *rows], lights=lights)
+
+
+def _warnings(s: ChainSolution) -> Iterator[Note]:
     if s.short is not None:
         yield Note(_short(s, s.short), "warn")
     if s.mobility == 0:
@@ -79,6 +119,9 @@ def _status(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
         yield Note(f"Singular pose: the joints can move the end effector{ways}{along}.", "warn")
     elif s.near_singular:
         yield Note("Near a singular pose: in one direction the end effector moves only a little.", "near")
+
+
+def _notes(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
     if p.target is not None and s.target_distance is not None:
         reached = "reached" if s.target_distance <= ENOUGH else f"{quantity(s.target_distance, 'm')} away"
         yield Note(f"Target {_place(p.target)} m: {reached}.")
@@ -105,14 +148,12 @@ def _swapped(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
     assert p.swap is not None
     i, a, b = p.swap, p.axes[p.swap - 1], p.axes[p.swap]
     names = f"T{sub(i - 1)}{sub(i)} and T{sub(i)}{sub(i + 1)}"
-    turned = quantity(s.swapped.angle, "°", 1)
-    if s.swapped.distance < 1e-9 and s.swapped.angle < 1e-6:
-        text = "the end effector stays where it is"
-    elif s.swapped.angle < 1e-6:
-        text = f"the end effector is {quantity(s.swapped.distance, 'm')} away, turned the same way"
-    else:
-        text = f"the end effector is {quantity(s.swapped.distance, 'm')} away, turned by {turned}"
-    if a == b:
+    alike = outcome(s.swapped) == "the same pose"
+    text = "the end effector stays where it is" if alike else f"the end effector is {outcome(s.swapped)}"
+    sliding = any(p.slides(k) for k in (i - 1, i))
+    if sliding:
+        why = "A slide and a turn commute only along one axis"
+    elif a == b:
         why = (
             f"Both turn about {a}: turns about one axis commute, steps along links don’t (set both lengths to 0 to see)"
         )
@@ -137,16 +178,21 @@ def _kept(s: ChainSolution) -> Iterator[Readout]:
     yield Table("Kept by the transform: p as the end effector sees it", rows)
 
 
-def _freedom(s: ChainSolution) -> Iterator[Readout]:
+def _freedom(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:
+    unit = "m/rad, or 1" if "p" in p.joints else "m/rad"
     yield Formula("Geometric Jacobian: velocity, then turning, for each joint", symbol("J"), mathml(s.jacobian, 2))
-    yield Formula("Singular values of its velocity rows", symbol("σ"), row(s.singular_values.tolist()), "m/rad")
+    yield Formula("Singular values of its velocity rows", symbol("σ"), row(s.singular_values.tolist()), unit)
     kinds = {0: "", 1: ": σ₁", 2: ": σ₁σ₂", 3: ": σ₁σ₂σ₃"}
     yield Formula(f"Manipulability{kinds[s.mobility]}", symbol("w"), mathml(s.manipulability))
 
 
 def describe(p: ChainParams, s: ChainSolution) -> str:
     """One sentence for people who listen."""
-    turns = ", ".join(f"{axis} {figure(a, 0)}°" for axis, a in zip(p.axes, p.angles, strict=True))
+    turns = ", ".join(
+        f"{axis} {figure(p.offset(k), 2)} metres" if p.slides(k) else f"{axis} {figure(p.angles[k], 0)}°"
+        for k, axis in enumerate(p.axes)
+        if p.kind(k) != "f"
+    )
     x, y, z = (figure(v, 2) for v in s.end)
     pose = "; singular pose" if s.singular else ""
     short = "" if s.short is None else f"; {'out of reach' if s.pull_outside else 'not reached'}"

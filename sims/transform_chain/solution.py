@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from geometry import quaternion, se3
+from geometry import se3
 from geometry.arrays import Array
 from geometry.kinematics import Chain, Posture, dexterity
 from geometry.rotations import rotation_angle
 from sims.kit.types import Quaternion
+from sims.transform_chain.drawing import HOLD, Circle, Joint, Span, circle, hold, joint, place_of, span, wxyz_of
 from sims.transform_chain.params import ChainParams, Place
 
 USUAL = 2.3
@@ -22,27 +23,6 @@ ENOUGH = 0.02
 """Metres within which a target counts as reached."""
 NEARLY = 0.05
 """Part of the largest singular value below which the smallest is nearly none."""
-_TURNS = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
-"""Columns of a frame that has its third axis along x, y or z."""
-
-
-@dataclass(frozen=True)
-class Joint:
-    """One transform as it is drawn: the frame after a joint and its link, in the frame before."""
-
-    axis: str
-    length: float
-    wxyz: Quaternion
-    position: Place
-
-
-@dataclass(frozen=True)
-class Circle:
-    """What the end effector describes as one joint turns: in the xy plane of a frame in the world."""
-
-    wxyz: Quaternion
-    centre: Place
-    radius: float
 
 
 @dataclass(frozen=True)
@@ -56,6 +36,8 @@ class Swapped:
     end_wxyz: Quaternion
     distance: float
     angle: float
+    apart: Span | None
+    """From the arm's end effector to the other's."""
 
 
 @dataclass(frozen=True)
@@ -86,14 +68,18 @@ class ChainSolution:
     pull_distance: float | None
     pull_outside: bool
     """The hand pulls to where no posture gets."""
-    plane: str | None
-    """Axis that all joints turn about."""
+    pulled: Span | None
+    """From the end effector to where the hand pulls it."""
     joints: tuple[Joint, ...]
     wxyz: Quaternion
     """Orientation of the end effector."""
     end: Place
-    arrows: Array
-    """Tails and tips (m, 2, 3) of the transforms as `show` says; those that lead nowhere are left out."""
+    tool: str
+    """Axis of the end effector that it points along: x with its link, z of an arm whose last link only turns."""
+    spans: tuple[Span | None, ...]
+    """The composed transforms, from the world to each frame."""
+    holds: tuple[Place | None, ...]
+    """Where each joint is held, in the world; None for a fixed one."""
     circle: Circle | None
     swapped: Swapped | None
     size: float
@@ -107,14 +93,16 @@ class ChainSolution:
 
 def solve(p: ChainParams) -> ChainSolution:
     """All the mathematics of a state."""
-    chain = Chain(p.axes, p.lengths)
-    posture = chain.forward([math.radians(a) for a in p.angles])
+    chain, moves = p.arm, p.moves
+    posture = chain.forward(moves)
     end_effector = posture.composed[-1]
     reach = chain.reach
-    joints = tuple(map(_joint, p.axes, p.angles, p.lengths))
-    end = _place(posture.positions[-1])
+    joints = tuple(map(joint, chain.links, moves))
+    positions = [place_of(position) for position in posture.positions]
+    end = positions[-1]
     through = _through(p.point, posture)
-    swapped = None if p.swap is None else _other_order(p, chain, posture, joints)
+    swapped = None if p.swap is None else _other_order(p.swap - 1, chain, posture, joints, moves)
+    size = min(max(sum(link.extent for link in chain.links) / USUAL, 0.4), 1.2)
     return ChainSolution(
         individual=posture.individual,
         composed=posture.composed,
@@ -122,38 +110,46 @@ def solve(p: ChainParams) -> ChainSolution:
         inverse=se3.inverse(end_effector),
         positions=posture.positions,
         swapped_end_effector=None if swapped is None else swapped[0],
-        **_freedom(p, posture),
+        **_freedom(p, chain, posture),
         reach=(reach.least, reach.greatest),
         through=through,
         kept=_kept(p.point, end_effector, through[-1]),
         target_distance=None if p.target is None else math.dist(end, p.target),
         pull_distance=None if p.pull is None else math.dist(end, p.pull),
         pull_outside=p.pull is not None and not reach.least <= math.hypot(*p.pull) <= reach.greatest,
-        plane=p.axes[0] if len({*p.axes}) == 1 else None,
+        pulled=None if p.pull is None else span(p.pull, end),
         joints=joints,
-        wxyz=_wxyz(end_effector[:3, :3]),
+        wxyz=wxyz_of(end_effector[:3, :3]),
         end=end,
-        arrows=_arrows(p.show, posture.positions),
-        circle=None if p.trace is None else _circle(p.axes[p.trace - 1], p.trace - 1, posture),
+        tool="z" if p.rows and not chain.lengths[-1] and p.axes[-1] == "z" else "x",
+        spans=tuple(span(positions[0], position) for position in positions[1:]),
+        holds=_holds(chain, moves, posture, joints, HOLD * size),
+        circle=None
+        if p.trace is None or p.kind(p.trace - 1) != "r"
+        else circle(p.axes[p.trace - 1], p.trace - 1, posture),
         swapped=None if swapped is None else swapped[1],
-        size=min(max(sum(p.lengths) / USUAL, 0.4), 1.2),
+        size=size,
     )
 
 
-def _joint(axis: str, degrees: float, length: float) -> Joint:
-    angle = math.radians(degrees)
-    half, c, s = 0.5 * angle, length * math.cos(angle), length * math.sin(angle)
-    w, v = math.cos(half), math.sin(half)
-    if axis == "x":
-        return Joint(axis, length, (w, v, 0.0, 0.0), (length, 0.0, 0.0))
-    if axis == "y":
-        return Joint(axis, length, (w, 0.0, v, 0.0), (c, 0.0, -s))
-    return Joint(axis, length, (w, 0.0, 0.0, v), (c, s, 0.0))
+def _trace(p: ChainParams, posture: Posture) -> Circle | None:
+    k = -1 if p.trace is None else p.trace - 1
+    return circle(p.axes[k], k, posture) if k >= 0 and p.kind(k) == "r" else None
 
 
-def _freedom(p: ChainParams, posture: Posture) -> dict[str, Any]:
+def _holds(
+    chain: Chain, moves: Sequence[float], posture: Posture, joints: Sequence[Joint], radius: float
+) -> tuple[Place | None, ...]:
+    frames = [np.eye(4), *posture.composed[:-1]]
+    own = map(hold, chain.links, joints, moves, [radius] * len(joints))
+    places = (place_of(T[:3, :3] @ place + T[:3, 3]) for T, place in zip(frames, own, strict=True))
+    return tuple(None if kind == "f" else place for kind, place in zip(chain.joints, places, strict=True))
+
+
+def _freedom(p: ChainParams, chain: Chain, posture: Posture) -> dict[str, Any]:
     """What the Jacobian says; which links there are at all decides the mobility, not how long they are."""
-    mobility = Chain(p.axes, tuple(float(length > 0.0) for length in p.lengths)).mobility
+    lengths, offsets = (tuple(float(v != 0.0) for v in numbers) for numbers in (chain.lengths, chain.offsets))
+    mobility = Chain(chain.axes, lengths, chain.twists, offsets, chain.starts, chain.joints).mobility
     velocity = posture.jacobian[:3]
     values, manipulability, singular = dexterity(velocity, mobility)
     least = values.item(mobility - 1) if mobility else 0.0
@@ -173,8 +169,8 @@ def _lost(p: ChainParams, velocity: Array, mobility: int) -> Array | None:
     left = int((values > 1e-6 * values[0]).sum())
     if mobility == 3 and left == 2:
         return np.asarray(directions[:, 2])
-    if mobility == 2 and left == 1 and len({*p.axes}) == 1:
-        return np.cross(np.eye(3)["xyz".index(p.axes[0])], directions[:, 0])
+    if mobility == 2 and left == 1 and p.plane is not None:
+        return np.cross(np.eye(3)["xyz".index(p.plane)], directions[:, 0])
     return None
 
 
@@ -197,47 +193,21 @@ def _kept(point: Place, T: Array, world: Array) -> tuple[tuple[float, float], tu
     return distances, (math.degrees(own), math.degrees(math.atan2(across, along)))
 
 
-def _arrows(show: str, positions: Array) -> Array:
-    tails = positions[:-1] if show == "individual" else np.zeros_like(positions[1:])
-    ends = np.stack([tails, positions[1:]], axis=1)
-    long = np.abs(ends[:, 1] - ends[:, 0]).sum(axis=1) > 1e-6
-    return ends if long.all() else ends[long]
-
-
-def _circle(axis: str, k: int, posture: Posture) -> Circle:
-    """Rounded, so that it is the same for every angle of its joint."""
-    frame = posture.composed[k - 1][:3, :3] if k else np.eye(3)
-    turned = frame[:, _TURNS[axis]]
-    normal, origin = turned[:, 2], posture.positions[k]
-    arm = posture.positions[-1] - origin
-    centre = origin + (arm @ normal) * normal
-    radius = math.dist(posture.positions[-1].tolist(), centre.tolist())
-    return Circle(_wxyz(turned), _place(centre.round(12)), round(radius, 9))
-
-
-def _other_order(p: ChainParams, chain: Chain, posture: Posture, joints: Sequence[Joint]) -> tuple[Array, Swapped]:
-    assert p.swap is not None
-    first = p.swap - 1
-    other, angles = chain.swap(first, [math.radians(a) for a in p.angles])
-    T, end = other.forward(angles).composed[-1], posture.composed[-1]
+def _other_order(
+    first: int, chain: Chain, posture: Posture, joints: Sequence[Joint], moves: Sequence[float]
+) -> tuple[Array, Swapped]:
+    other, moved = chain.swap(first, moves)
+    T, end = other.forward(moved).composed[-1], posture.composed[-1]
     before = posture.composed[first - 1] if first else np.eye(4)
+    at, own = place_of(T[:3, 3]), place_of(end[:3, 3])
     swapped = Swapped(
-        wxyz=_wxyz(before[:3, :3]),
-        origin=_place(before[:3, 3]),
+        wxyz=wxyz_of(before[:3, :3]),
+        origin=place_of(before[:3, 3]),
         joints=(joints[first + 1], joints[first], *joints[first + 2 :]),
-        end=_place(T[:3, 3]),
-        end_wxyz=_wxyz(T[:3, :3]),
-        distance=math.dist(T[:3, 3].tolist(), end[:3, 3].tolist()),
+        end=at,
+        end_wxyz=wxyz_of(T[:3, :3]),
+        distance=math.dist(at, own),
         angle=math.degrees(float(rotation_angle(T[:3, :3].T @ end[:3, :3]))),
+        apart=span(own, at),
     )
     return T, swapped
-
-
-def _wxyz(R: Array) -> Quaternion:
-    w, x, y, z = quaternion.from_matrix(R).tolist()
-    return w, x, y, z
-
-
-def _place(array: Array) -> Place:
-    x, y, z = array.tolist()
-    return x, y, z

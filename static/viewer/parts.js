@@ -4,11 +4,13 @@ import { morph } from "./morph.js";
 import { Steady } from "./steady.js";
 
 export class Parts {
-  constructor(pace, controls, handles, highlight) {
+  // `goesOn()` is told of what a hand in the scene has moved.
+  constructor(pace, controls, handles, highlight, goesOn) {
     this.pace = pace;
     this.controls = controls;
     this.handles = handles;
     this.highlight = highlight;
+    this.goesOn = goesOn;
     this.steady = new Steady();
     this.version = -1;
   }
@@ -29,6 +31,7 @@ export class Parts {
     this.pace.answered();
     this.controls.show(values);
     this.highlight.moved(Object.keys(values));
+    if (this.highlight.grips && Object.keys(values).length) this.goesOn();
     if (!Object.keys(parts).length) return;
     this.handles.drawn();
     this.highlight.show();

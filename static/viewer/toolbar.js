@@ -7,11 +7,11 @@ export class Toolbar {
     this.address = address;
     this.words = words;
     const does = {
-      share: () => this.share(),
+      share: () => this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state"),
+      copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
-      copy: (button) => this.copy(button.value, "Copied.", "Text to copy", "Text"),
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.goHome(),
       "give-up": () => files.giveUp(),
@@ -28,30 +28,28 @@ export class Toolbar {
     }, true);
   }
 
-  share() {
-    this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state", "Link");
-  }
-
-  async copy(text, done, title, label) {
+  async copy(words, done, title) {
     try {
       // Frames of other sites may not; asking all the same would leave an error in the console.
       if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
-      await navigator.clipboard.writeText(text);
+      await navigator.clipboard.writeText(words);
       this.words.notify(done);
     } catch {
-      dialog(title, `<p><input class="s3-link" readonly aria-label="${label}" value=""></p>`);
+      dialog(title, `<p><input class="s3-link" readonly aria-label="${title}" value=""></p>`);
       const field = document.querySelector(".s3-link");
-      field.value = text;
+      field.value = words;
       field.select();
     }
   }
 }
 
-// A picture covers the scene, or goes back to its place; it stays live.
+// A picture covers the scene, or goes back to its place; it stays live. Two that stand side by side do so together.
 function enlarge(figure) {
-  const large = !figure.classList.contains("s3-full");
+  const pair = !figure.matches(".s3-wide") && figure.parentElement.querySelectorAll(".s3-pane:not(.s3-wide)").length > 1;
+  const shown = pair ? figure.parentElement : figure;
+  const large = !shown.classList.contains("s3-full");
   document.querySelector(".s3-full")?.classList.remove("s3-full");
-  figure.classList.toggle("s3-full", large);
+  shown.classList.toggle("s3-full", large);
   document.documentElement.style.setProperty("--s3-left", `${column.offsetLeft || innerWidth}px`);
 }
 

@@ -165,7 +165,9 @@ def test_a_pasted_rotation_is_recognised_asked_about_and_copied(classroom: Class
     learner.says("Read as a quaternion, w first.")
     assert text.input_value() == "wxyz 0.5 0.5 -0.5 0.5", "what was pasted is lost"
     wanted = Rotation.from_quat([0.5, -0.5, 0.5, 0.5]).as_matrix()
-    np.testing.assert_allclose(learner.until(lambda: turned(learner)), wanted, rtol=0, atol=1e-9)
+    found = learner.until(lambda: turned(learner))
+    assert found is not None
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-9)
     learner.press("Copy: Quaternion, w first (Eigen, Blender)")
     learner.says("Copied.")
     assert learner.frame.evaluate("() => navigator.clipboard.readText()") == "wxyz 0.5, 0.5, -0.5, 0.5"

@@ -57,10 +57,7 @@ def test_sliders_turn_and_stretch_the_arm_and_the_link_restores_it(classroom: Cl
     learner.choose("show", "composed")
     agree(learner, show="composed")
     learner.reload()
-    assert agree(learner, angles=[75, 41, -30], lengths=[1, 0.8, 0.9], axes="zyz", show="composed") == {
-        **solution,
-        "arrows": learner.solved()["arrows"],
-    }
+    assert agree(learner, angles=[75, 41, -30], lengths=[1, 0.8, 0.9], axes="zyz", show="composed") == solution
 
 
 def tip(learner: Learner) -> Array:
@@ -90,6 +87,15 @@ def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) 
     solution = agree(learner, swap=3)
     pose = learner.scene.world_pose("/swapped_end")
     np.testing.assert_allclose(pose, solution["swapped_end_effector"], rtol=0, atol=1e-6)
+    learner.frame.locator('.s3-stage input[value="2"]').check()
+    learner.until(lambda: learner.params["stage"] == 2)
+    alone = learner.solution(stage=2)
+    assert learner.reads("T12", alone["individual"][1])
+    assert learner.reads("T02", alone["composed"][1])
+    learner.until(lambda: [learner.scene.visible(f"{at}/arrow") for at in ("/link1", "/link1/link2")] == [False, True])
+    learner.frame.locator('.s3-stage input[value=""]').check()
+    agree(learner, stage=None)
+
     learner.press("Remove link")
     agree(learner, angles=[10, 20, 30], lengths=[1, 0.8, 0.5], axes="zyy", swap=None)
     learner.until(lambda: learner.frame.locator('[data-slide="angles.3"]').count() == 0)
@@ -112,6 +118,14 @@ def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
     learner.until(lambda: np.testing.assert_allclose(learner.place_of("/grip"), [x - 30, y - 24], atol=3))
     solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
     assert solution["pull_distance"] is None
+
+    turned = solution["holds"][0]
+    u, v = learner.place_of("/turn1")
+    learner.pull((u, v), 24, 0)
+    learner.until(lambda: learner.params["trace"] == 1)
+    held = agree(learner, lengths=[1, 0.8, 0.5])
+    assert np.hypot(*np.subtract(held["holds"][0], turned)[:2]) > 0.02
+    assert held["holds"][0][2] == 0.0, "it goes round, wherever it is pulled"
 
     learner.type("/grip", "9", box=3)
     learner.until(lambda: learner.params["pull"] is not None)

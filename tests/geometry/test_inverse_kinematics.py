@@ -161,3 +161,18 @@ def test_bad_input_is_refused() -> None:
             inverse_kinematics(chain, target, start, tolerance=tolerance)
     with pytest.raises(GeometryError, match="start"):
         inverse_kinematics(chain, [1.0, 0.0, 0.0], np.zeros((3, 2)))
+
+
+def scara() -> Chain:
+    """Two turns, a slide downwards, a turn."""
+    return Chain("zzzz", (0.425, 0.375, 0.0, 0.0), (0.0, math.pi, 0.0, 0.0), (0.3, 0.0, 0.0, 0.0), joints="rrpr")
+
+
+@given(st.floats(-2.0, 2.0), st.floats(0.4, 2.5), st.floats(0.0, 0.2), st.floats(-0.2, 0.2), st.floats(-0.1, 0.1))
+def test_a_joint_that_slides_takes_part(first: float, elbow: float, down: float, more: float, lower: float) -> None:
+    chain = scara()
+    target = end(chain, np.array([first + more, elbow - more, down + lower, 0.0]))
+    found = inverse_kinematics(chain, target, [first, elbow, down, 0.0])
+    consistent(chain, target, found)
+    assert found.reached
+    assert found.angles[2] == pytest.approx(down + lower, abs=TOLERANCE)

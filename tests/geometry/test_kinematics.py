@@ -1,6 +1,7 @@
 """Arms against products of SciPy's rotations, finite differences and NumPy's singular values."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -127,6 +128,98 @@ def test_bad_angles_are_refused_and_nan_in_a_batch() -> None:
     assert np.isfinite(found.jacobian[0]).all()
     assert np.isnan(found.positions[1, 2]).any()
     np.testing.assert_array_equal(found.positions[0, 2], [2.0, 0.0, 0.0])
+
+
+# ---- twists, offsets, joints that slide
+
+
+@st.composite
+def dh_arms(draw: st.DrawFn) -> tuple[Chain, Array]:
+    """An arm of one to six joints with all that a link can have, and its angles and ways."""
+    n = draw(st.integers(1, 6))
+
+    def many(numbers: st.SearchStrategy[float]) -> tuple[float, ...]:
+        return tuple(draw(st.lists(numbers, min_size=n, max_size=n)))
+
+    chain = Chain(
+        draw(st.text("xyz", min_size=n, max_size=n)), many(st.floats(-2.0, 2.0)), many(angles),
+        many(st.floats(-1.0, 1.0)), many(angles), draw(st.text("rpf", min_size=n, max_size=n)),
+    )  # fmt: skip
+    return chain, np.array(many(st.floats(-3.0, 3.0)))
+
+
+def whole_link(chain: Chain, i: int, moved: float) -> Array:
+    """Rot(axis, θ) · Trans(axis, d) · Trans(x, length) · Rot(x, twist), each factor by SciPy."""
+    turn, way = moved * (chain.joints[i] == "r"), moved * (chain.joints[i] == "p")
+    T = link(chain.axes[i], 0.0, chain.starts[i] + turn)
+    T = T @ se3.transform(np.eye(3), (chain.offsets[i] + way) * np.eye(3)["xyz".index(chain.axes[i])])
+    return T @ se3.transform(np.eye(3), (chain.lengths[i], 0.0, 0.0)) @ link("x", 0.0, chain.twists[i])
+
+
+@given(dh_arms())
+def test_whole_links_and_their_products(arm: tuple[Chain, Array]) -> None:
+    chain, moved = arm
+    posture, T = chain.forward(moved), np.eye(4)
+    for i, each in enumerate(moved):
+        own = whole_link(chain, i, each)
+        T = T @ own
+        np.testing.assert_allclose(posture.individual[i], own, rtol=0, atol=10 * EXACT)
+        np.testing.assert_allclose(posture.composed[i], T, rtol=0, atol=100 * EXACT)
+    many = chain.forward([moved, moved + 0.25])
+    for batch, one in zip(many, chain.forward(moved + 0.25), strict=True):
+        np.testing.assert_allclose(batch[1], one, rtol=0, atol=1e-13)
+    reach = chain.reach
+    assert reach.least - 1e-9 <= np.linalg.norm(posture.positions[-1]) <= reach.greatest + 1e-9
+
+
+@given(dh_arms())
+def test_the_jacobian_of_joints_that_slide_is_the_derivative_too(arm: tuple[Chain, Array]) -> None:
+    chain, moved = arm
+    step = 1e-5
+    ahead, behind = (chain.forward(moved + sign * step * np.eye(len(moved))).composed[:, -1] for sign in (1.0, -1.0))
+    rates = (ahead - behind) / (2.0 * step)
+    spin = rates[:, :3, :3] @ chain.forward(moved).composed[-1, :3, :3].T
+    expected = np.column_stack([rates[:, :3, 3], spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]])
+    np.testing.assert_allclose(chain.forward(moved).jacobian.T, expected, rtol=0, atol=1e-7)
+
+
+def test_published_pose_of_a_ur5() -> None:
+    """Universal Robots' own table; the pose is one that textbooks give to check it."""
+    quarter = math.pi / 2.0
+    ur5 = Chain(
+        "zzzzzz", (0.0, -0.425, -0.39225, 0.0, 0.0, 0.0), (quarter, 0.0, 0.0, quarter, -quarter, 0.0),
+        (0.089159, 0.0, 0.0, 0.10915, 0.09465, 0.0823),
+    )  # fmt: skip
+    at = ur5.forward(np.radians([180.0, -45.0, 0.0, 90.0, 0.0, 0.0])).positions[-1]
+    np.testing.assert_allclose(at, (0.51096, 0.19145, 0.60011), rtol=0, atol=1e-5)
+    np.testing.assert_allclose(ur5.forward([0.0] * 6).positions[-1], (-0.81725, -0.19145, -0.005491), atol=EXACT)
+
+
+@given(dh_arms(), st.data())
+def test_swapped_links_take_all_that_they_have_along(arm: tuple[Chain, Array], data: st.DataObject) -> None:
+    chain, moved = arm
+    if len(moved) > 1:
+        i = data.draw(st.integers(0, len(moved) - 2))
+        swapped, values = chain.swap(i, moved)
+        expected = chain.forward(moved).individual.copy()
+        expected[[i, i + 1]] = expected[[i + 1, i]]
+        np.testing.assert_array_equal(swapped.forward(values).individual, expected)
+
+
+@pytest.mark.parametrize(
+    ("more", "argument"),
+    [
+        ({"twists": (0.0,)}, "twists"),
+        ({"offsets": (0.0, math.nan)}, "offsets"),
+        ({"starts": (0.0,) * 3}, "starts"),
+        ({"joints": "r"}, "joints"),
+        ({"joints": "rx"}, "joints"),
+    ],
+)
+def test_what_is_no_row_is_refused(more: dict[str, Any], argument: str) -> None:
+    with pytest.raises(GeometryError) as caught:
+        Chain("zz", (1.0, 1.0), **more)
+    assert caught.value.argument == argument
 
 
 # ---- dexterity

@@ -20,7 +20,6 @@ from sims.euler_angles import SIM, EulerParams, solve
 from sims.euler_angles.actions import ARCS, BODY
 from sims.kit import readout
 from sims.kit.column import Column
-from sims.kit.sim import Step
 from tests.server import Rig
 from tests.sims.markup import words
 
@@ -227,7 +226,7 @@ def test_nose_and_wing_go_where_they_are_pulled(
         after = scipys(found)
         np.testing.assert_allclose(after[:, column], np.array(place) / length, rtol=0, atol=1e-4)
         turned = Rotation.from_matrix(after @ before.T).magnitude()
-        angle = math.acos(min(max(before[:, column] @ place / length, -1.0), 1.0))
+        angle = math.acos(min(max(float(before[:, column] @ place) / length, -1.0), 1.0))
         assert turned == pytest.approx(angle, abs=1e-3), "it isn't the shortest turn"
     assert SIM.handles["/held_nose"](p, (0.0, 0.0, 0.0)) == {}
 
@@ -264,7 +263,7 @@ def test_the_animation_names_each_turn(order: str, frame: str) -> None:
     p = state(order, frame)
     steps = SIM.actions[0].run(p)
     assert not isinstance(steps, Mapping)
-    said = list(dict.fromkeys(step.words for step in steps if isinstance(step, Step)))
+    said = list(dict.fromkeys(step.words for step in steps))
     assert [sentence.split()[0] for sentence in said] == ["First", "Second", "Third"]
     for turn, sentence in zip(p.turns, said, strict=True):
         assert f"{turn.said}, about" in sentence

@@ -12,7 +12,7 @@ LINKED = [
     ("coordinate-frames", "convention", "/axes/x"), ("coordinate-frames", "point", "/axes/box/x"),
     ("euler-angles", "yaw", "/arc0/line"), ("gimbal-lock", "pitch", "/outer/axis"),
     ("quaternion", "axis", "/axis/arrow"), ("quaternion", "angle", "/axis/turn/arc"),
-    ("transform-chain", "show", "/transforms"),
+    ("transform-chain", "show", "/link1/arrow"), ("transform-chain", "angles.0", "/link1/frame"),
     ("camera", "fx", "/camera/frustum"), ("camera", "tilt", "/camera/axis"), ("epipolar", "point", "/rays"),
     ("epipolar", "left_pan", "/left/frustum"), ("triangulation", "baseline", "/baseline"),
     ("triangulation", "focal", "/left/frustum"), ("point-cloud", "show_box", "/box/edges"),
@@ -24,7 +24,7 @@ LINKED = [
 def test_what_a_control_moves_stands_out_while_it_is_pointed_at(slug: str, name: str, node: str) -> None:
     sim = by_slug(slug)
     assert sim is not None
-    assert not sim.params.kinds[name].hidden
+    assert not sim.params.kinds[name.partition(".")[0]].hidden
     with Rig(sim) as rig:
         before, thick = rig.model.snapshot(), ("thickness", "shaft_radius", "point_size")
 

@@ -17,7 +17,7 @@ from sims import SIMS, by_slug
 from sims.kit import pane, readout
 from sims.kit.column import Column
 from sims.kit.controls import key
-from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Slider, Switch, Text, Vector
+from sims.kit.fields import Choice, Letters, Numbers, Opened, OptionalNumber, Slider, Switch, Text, Vector
 from sims.kit.params import Params
 from sims.kit.sim import Sim, jsonable
 from tests.frames import differences
@@ -77,7 +77,10 @@ def test_link_of_a_state_leads_back_to_it(sim: AnySim, name: str, params: Params
 
 @each_sim
 def test_defaults_are_left_out_of_the_link(sim: AnySim) -> None:
-    assert sim.params().query() == ""
+    opened = parse(sim, "")
+    assert opened == sim.params(**sim.params.opening)
+    assert opened.query() == ""
+    assert len(sim.params().query_items()) == bool(sim.params.opening), "the state of the defaults has a link too"
 
 
 @each_sim
@@ -271,7 +274,7 @@ def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) 
 @each_sim
 def test_few_controls_are_seen_at_first(sim: AnySim) -> None:
     first = [name for name, kind in sim.params.kinds.items() if not kind.hidden and not kind.group]
-    assert 1 <= len(first) + len(sim.typed) <= 6
+    assert 1 <= len(first) + len(sim.typed) + len(sim.dials) <= 6
     assert len([action for action in sim.actions if not action.group]) <= 5
 
 
@@ -311,7 +314,7 @@ def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim, tiny: float) -
                     params = start.changed({name: one})
                     solution = sim.solve(params)
                     assert readout.render(sim.readouts(params, solution))
-                    assert sim.panes is None or sim.panes(params, solution)
+                    assert sim.panes is None or sim.panes(params, solution) is not None
 
 
 # ---- what hands do
@@ -380,7 +383,8 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         step = NUMERIC[sim.slug][name].step
         aims = [low, high, high - step]
         if isinstance(kind, Vector):
-            aims = list(zip(*((low, high, high - step) for low, high in kind.each), strict=True))
+            ranges = rig.session.params.ranges(name)
+            aims = list(zip(*((low, high, high - step) for low, high in ranges), strict=True))
     for aim in aims:
         rig.browser.move(name, aim)
         rig.settle()
@@ -388,9 +392,9 @@ def test_control_sets_its_parameter(rigs: dict[str, Rig], sim: AnySim, name: str
         wanted = shown(rig.session.params, name)
         assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None)
     if isinstance(kind, Vector):
-        rig.browser.move(f"{name}.1", kind.each[1][0])
+        rig.browser.move(f"{name}.1", ranges[1][0])
         rig.settle()
-        assert getattr(rig.session.params, name) == pytest.approx((*aims[-1][:1], kind.each[1][0], *aims[-1][2:]))
+        assert getattr(rig.session.params, name) == pytest.approx((*aims[-1][:1], ranges[1][0], *aims[-1][2:]))
     assert not rig.browser.refused
 
 
@@ -425,6 +429,8 @@ def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnyS
     for _, params in [(n, p) for s, n, p in FEW if s is sim]:
         rig.show(params)
         for name in [n for s, n in field_cases() if s is sim]:
+            if isinstance(params.kinds[name], Opened):  # what it doesn't say may follow from the others
+                continue
             wanted = shown(params, name)
             assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None), name
             if isinstance(params.kinds[name], Slider):
@@ -445,8 +451,11 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
         shown = [
             e.get("data-control") for e in xml(rig.column.parts[f"control:{name}"]).iter() if e.get("data-control")
         ]
-        assert shown == [f"{name}.{k}" for k in range(len(sim.offers(params).entries(name)))]
-        assert [rig.column.values[f"{name}.{k}"] for k in range(len(start))] == [*start]
+        entries = sim.offers(params).entries(name)
+        assert shown == [f"{name}.{k}" for k, entry in enumerate(entries) if entry is not None]
+        for k, (entry, value) in enumerate(zip(entries, start, strict=bool(start))):
+            assert entry in (None, value)
+            assert rig.column.values.get(f"{name}.{k}") == entry
     if not start:
         return
     last = len(start) - 1
@@ -520,6 +529,23 @@ def test_what_is_dragged_can_be_typed(sim: AnySim) -> None:
             assert rig.column.values[f"{typed.handle}.2"] == pytest.approx(aim[2] - 0.02, abs=1e-6)
 
 
+@each_sim
+def test_a_dial_sets_what_it_shows_within_its_ends_and_is_typed_exactly(sim: AnySim) -> None:
+    starts = [sim.params(), *(params for each, _, params in ALL if each is sim)]
+    with Rig(sim) as rig:
+        for dial in sim.dials:
+            rig.show(next(params for params in starts if dial.value(params, sim.solve(params)) is not None))
+            for aim, kept in ((dial.low - 1.0, dial.low), (0.5 * (dial.low + dial.high), None), (1e9, dial.high)):
+                rig.browser.move(dial.handle, aim)
+                rig.settle()
+                shown = rig.column.values[dial.handle]
+                assert shown == dial.value(rig.session.params, rig.session.solution)
+                assert shown == pytest.approx(aim if kept is None else kept)
+            rig.host.call(lambda name=dial.handle, low=dial.low: rig.session.enter(name, f"{low + 0.25}"))  # type: ignore[misc]
+            rig.settle()
+            assert rig.column.values[dial.handle] == pytest.approx(dial.low + 0.25)
+
+
 @each_state
 def test_what_can_be_typed_is_shown_where_it_exists(
     rigs: dict[str, Rig], sim: AnySim, name: str, params: Params
@@ -531,3 +557,7 @@ def test_what_can_be_typed_is_shown_where_it_exists(
         assert bool(rig.column.parts[f"control:{typed.handle}"]) == (place is not None)
         if place is not None:
             assert rig.column.vector(typed.handle) == pytest.approx([*place])
+    for dial in sim.dials:
+        value = dial.value(params, rig.session.solution)
+        assert bool(rig.column.parts[f"control:{dial.handle}"]) == (value is not None)
+        assert rig.column.values[dial.handle] == value

@@ -100,6 +100,19 @@ class Solid(Node):
             set_property(self.handle, "faces", faces.astype(np.uint32))
 
 
+class Grip(Solid):
+    """A ball that the pointer can drag, with the rings round it."""
+
+    def __init__(self, handle: Any, rings: Sequence[Node]) -> None:
+        super().__init__(handle)
+        self._rings = rings
+
+    def scale(self, factors: float | tuple[float, float, float]) -> None:
+        for node in self._rings:
+            node.scale(factors)
+        super().scale(factors)
+
+
 class Cloud(Node):
     """Many dots, of one colour or each of its own."""
 
@@ -112,7 +125,7 @@ class Cloud(Node):
         self._stress = STRESS if on else 1.0
         self.size(self._size)
 
-    def points(self, points: npt.NDArray[np.float64]) -> None:
+    def points(self, points: npt.NDArray[np.floating[Any]]) -> None:
         """Move the dots to places (n, 3)."""
         if self.differs("points", points):
             set_property(self.handle, "points", points.astype(np.float32))
