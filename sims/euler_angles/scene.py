@@ -16,11 +16,11 @@ from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
 from sims.kit.types import Place, Vector
 
-TIPS = (1.0, 0.98)
+TIPS = (0.92, 0.94)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
-ANCHORS = dict(zip(RADII, ("top-center", "center-center", "center-left"), strict=True))
-"""The first label hangs lower, clear of the next one where the two arcs meet; the last stands beside its short arc."""
+ANCHORS = dict(zip(RADII, ("top-center", "center-left", "center-left"), strict=True))
+"""The first label hangs lower, clear of the next one where the two arcs meet; the others stand beside their arcs."""
 
 
 class EulerScene:

@@ -153,6 +153,7 @@ def sliders(learner: Learner) -> list[str]:
 
 def test_a_pasted_rotation_is_recognised_asked_about_and_copied(classroom: Classroom) -> None:
     learner = classroom.open_column("euler-angles/embed", permissions=["clipboard-read", "clipboard-write"])
+    learner.witness.expect("422")
     text = learner.frame.locator("#paste")
     learner.unfold(text)
     text.fill("0.5 0.5 0.5 0.5")
