@@ -24,7 +24,8 @@ def caption(p: ChainParams, s: ChainSolution) -> str:
         return "A singular pose: there is a direction in which no joint can move the end effector."
     if p.stage is not None:
         i = p.stage
-        return f"T{sub(i - 1)}{sub(i)} alone: its columns are the axes and the origin of frame {i}, as frame {i - 1} sees them."
+        name = f"T{sub(i - 1)}{sub(i)}"
+        return f"{name} alone: its columns are the axes and the origin of frame {i}, as frame {i - 1} sees them."
     return "Pull the ring of a joint: all that follows moves as one piece, and only its own transform changes."
 
 
