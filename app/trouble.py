@@ -27,18 +27,31 @@ class Unknown(KeyError):
         self.complaint = Complaint("name", shown(name), clipped("one of: " + ", ".join(known), 400))
 
 
-def error_message(sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The message that pages get; `given` are the parameters as they came. What nobody has foreseen is logged."""
+def error_message(
+    sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any] | None = None, *, beside: bool = False
+) -> dict[str, Any]:
+    """The message that pages get; `given` are the parameters as they came. What nobody has foreseen is logged.
+
+    `beside`: it stands beside the control, and needs neither name nor value.
+    """
     if isinstance(error, Unknown):
         return refused(error.words, error.complaint)
     if isinstance(error, ValidationError):
-        return refused("", *(complaint for _, complaint in complaints(sim.params, given or {}, error)))
+        found = list(complaints(sim.params, given or {}, error))
+        said = " ".join(_sentence(complaint, bool(item["loc"])) for item, complaint in found) if beside else ""
+        return refused(said, *(complaint for _, complaint in found))
     if isinstance(error, GeometryError):
         known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
     place = traceback.extract_tb(error.__traceback__)[-1]
     log.error("%s can't go on from here: %r in %s, line %s", sim.slug, error, place.filename, place.lineno)
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
+
+
+def _sentence(complaint: Complaint, kind: bool) -> str:
+    """What is allowed, as a sentence: of a `kind` of field, or in the words of a sim's own validator."""
+    _, _, allowed = complaint
+    return f"This needs {allowed}." if kind else f"{allowed[0].upper()}{allowed[1:]}."
 
 
 def question(complaint: Complaint) -> str:

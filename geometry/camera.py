@@ -187,15 +187,24 @@ def aim(center: npt.ArrayLike, target: npt.ArrayLike) -> tuple[float | None, flo
 
 
 def parallel_rig(
-    baseline: float, focal: float, principal_point: tuple[float, float] = (320.0, 240.0), height: float = 1.0
+    baseline: float,
+    focal: float,
+    principal_point: tuple[float, float] = (320.0, 240.0),
+    height: float = 1.0,
+    doffs: float = 0.0,
 ) -> tuple[Camera, Camera]:
     """Return the left and the right camera of a stereo rig that looks along the world's +Y.
 
-    Their centres are (∓baseline/2, 0, height) in metres; focal and principal_point are in pixels.
+    Their centres are (∓baseline/2, 0, height) in metres; focal, principal_point and doffs are in pixels. The principal
+    point is the left camera's; the right one's lies doffs farther right, as in rigs whose pictures were rectified.
     Raises GeometryError for a negative baseline or a focal length that isn't positive.
     """
     half = 0.5 * as_number("baseline", baseline, least=0.0)
-    return _level(-half, height, focal, principal_point), _level(half, height, focal, principal_point)
+    cx, cy = principal_point
+    return (
+        _level(-half, height, focal, (cx, cy)),
+        _level(half, height, focal, (cx + as_number("doffs", doffs), cy)),
+    )
 
 
 def _level(x: float, height: float, focal: float, principal_point: tuple[float, float]) -> Camera:

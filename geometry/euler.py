@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import Array, Mask, Matrix3, components, each, product
-from .errors import as_angle, as_array, as_choice
+from .errors import as_angle, as_array, as_choice, as_number
 from .rotations import AXES, as_rotation, axis_rotation
 
 ORDERS = ("zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz")
@@ -106,3 +106,35 @@ def lock_distance(middle: float | Array, order: str) -> Array:
     """
     from_zero = as_angle("middle", middle) - (0.0 if is_proper(order) else 0.5 * math.pi)
     return np.asarray(np.abs(from_zero - math.pi * np.rint(from_zero / math.pi)))
+
+
+def lock_sign(middle: float, order: str, frame: str) -> int:
+    """Return the sign s, 1 or −1, with which, at lock, a rotation depends on first + s · third angle alone.
+
+    middle in radians, near the lock that is meant; angles as written, in both frames.
+    Raises GeometryError for an unknown order or frame, or an angle that isn't finite.
+    Source: with R = A(a) B(b) C(c), B turns the axis of C to s times that of A, so that R = A(a + s c) B(b).
+    """
+    angle = as_number("middle", middle)
+    if is_proper(order):
+        end, cyclic = math.cos(angle), True
+    else:
+        end, cyclic = math.sin(angle), (AXES.index(order[2]) - AXES.index(order[1])) % 3 == 1
+    extrinsic = as_choice("frame", frame, FRAMES) == "extrinsic"
+    flipped = (end < 0.0) ^ (not cyclic) ^ (extrinsic and not is_proper(order))
+    return -1 if flipped else 1
+
+
+def other_triple(angles: npt.ArrayLike, order: str) -> Array:
+    """Return the other Euler angles (..., 3) in radians that give the same rotation, first and third within ±π.
+
+    Raises GeometryError for an unknown order, or an angle that isn't finite: NaN in a batch.
+    Source: Shoemake 1994, as above: half a turn first and last, and the middle one mirrored at the order's lock.
+    """
+    half_turn = 0.0 if is_proper(order) else math.pi
+    a, b, c = np.moveaxis(np.asarray(as_array("angles", angles, 3)), -1, 0)
+    return np.stack([_within(a + math.pi), _within(half_turn - b), _within(c + math.pi)], axis=-1)
+
+
+def _within(angle: Array) -> Array:
+    return np.asarray(angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi)))

@@ -78,17 +78,22 @@ def handedness(axes: npt.ArrayLike) -> str:
     return "right" if determinant > 0.0 else "left"
 
 
-def change_of_basis(basis_from: npt.ArrayLike, basis_to: npt.ArrayLike) -> Array:
+def change_of_basis(
+    basis_from: npt.ArrayLike, basis_to: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)
+) -> Array:
     """Return the matrices (..., 4, 4) that take coordinates in one basis (..., 3, 3) to those in another.
 
-    Their determinant is 1, a rotation, between bases of one handedness and −1, improper, between others.
+    origin (..., 3) is where the other frame begins, in coordinates of the first; by default they begin together.
+    The determinant is 1, a rigid motion, between bases of one handedness and −1, improper, between others.
     Raises GeometryError if a basis isn't three perpendicular axes of length one; in a batch it gives NaN.
-    Source: basis_to⁻¹ basis_from, the inverse by the transpose.
+    Source: M = basis_to⁻¹ basis_from, the inverse by the transpose; a point p becomes M (p − origin).
     """
     source, target = _orthonormal("basis_from", basis_from), _orthonormal("basis_to", basis_to)
+    o = as_array("origin", origin, 3)
     M = target.swapaxes(-1, -2) @ source + 0.0  # no −0
-    T = np.zeros((*M.shape[:-2], 4, 4))
+    T = np.zeros((*np.broadcast_shapes(M.shape[:-2], o.shape[:-1]), 4, 4))
     T[..., :3, :3] = M
+    T[..., :3, 3] = 0.0 - np.matvec(M, o)
     T[..., 3, 3] = 1.0
     return T
 

@@ -1,4 +1,4 @@
-"""Quaternion algebra taken apart: the terms of a product, the steps of q p q*, a quaternion as a point of a ball."""
+"""Quaternion algebra taken apart: the terms of a product, the steps of q p q*, quaternions as points of a ball."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .arrays import Array, Mask, components, dot, ratio, stack
-from .errors import as_array
+from .errors import as_array, as_finite_array
 from .quaternion import conjugate, multiply, normalize
 
 # Component i of the product p q is the sum over j of SIGNS[i][j] p[j] q[PARTNERS[i][j]]: i² = j² = k² = ijk = −1.
@@ -64,3 +64,16 @@ def to_ball(q: npt.ArrayLike) -> tuple[Array, Mask]:
         scale = np.where(w >= 0.0, 1.0 / np.maximum(1.0 + w, 1.0), beyond)
     scale = scale + 0.0 * scale  # NaN where it is beyond all numbers
     return stack(scale * x, scale * y, scale * z), np.asarray(scale == scale)
+
+
+def from_ball(points: npt.ArrayLike) -> Array:
+    """Return the unit quaternions (..., 4) that `to_ball` puts at points (..., 3).
+
+    A point at distance r in the direction n is the turn by 4 atan r about n; beyond r = 1 it has w < 0.
+    Raises GeometryError for what isn't finite.
+    Source: Schaub and Junkins 1996, "Stereographic orientation parameters".
+    """
+    x, y, z = components(as_finite_array("points", points, 3))
+    square = x * x + y * y + z * z
+    scale = 2.0 / (1.0 + square)
+    return stack(scale - 1.0, scale * x, scale * y, scale * z)

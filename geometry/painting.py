@@ -89,35 +89,36 @@ class Painter:
         rows, viewer = np.concatenate([P, planes]), viewpoint(P)
         flat = self._corners.reshape(-1, 3).dot(rows[:, :3].T) + rows[:, 3]
         values = flat.reshape(*self._corners.shape[:2], -1)
-        outside = values[..., 3:] < 0.0
-        seen = (self.planes.dot(viewer) > 0.0) & ~outside.all(axis=1).any(axis=1)
-        whole = ~outside.any(axis=(1, 2))
+        # Outside of which planes a corner is, as the bits of a number: one comparison for all of them.
+        outside = (flat[:, 3:] < 0.0).dot(2.0 ** np.arange(len(planes))).astype(np.int64).reshape(values.shape[:2])
+        seen = (self.planes.dot(viewer) > 0.0) & (np.bitwise_and.reduce(outside, axis=1) == 0)
+        cut = np.bitwise_or.reduce(outside, axis=1).tolist()
         pixels = (values[..., :2] / values[..., 2:3]).tolist()
-        shown, uncut = seen.tolist(), whole.tolist()
+        shown = seen.tolist()
         painted: list[tuple[int, Pixels]] = []
         for face in self.order(viewer):
             if shown[face]:
                 count = self._counts[face]
-                corners = pixels[face][:count] if uncut[face] else _pixels(values[face, :count].tolist())
+                corners = _cut(values[face, :count].tolist(), cut[face]) if cut[face] else pixels[face][:count]
                 if len(corners) > 2:
                     painted.append((face, corners))
         return painted
 
 
-def _pixels(corners: list[list[float]]) -> Pixels:
-    return [(u / w, v / w) for u, v, w, *_ in clip_polygon(corners, 3)]
+def _cut(corners: list[list[float]], planes: int) -> Pixels:
+    """The pixels of what is inside the planes whose bits are set."""
+    entries = [3 + k for k in range(planes.bit_length()) if planes >> k & 1]
+    return [(u / w, v / w) for u, v, w, *_ in clip_polygon(corners, entries)]
 
 
-def clip_polygon(corners: Sequence[Sequence[float]], first: int) -> Sequence[Sequence[float]]:
-    """Return the part of a convex polygon where none of the corners' entries from the `first` on is negative.
+def clip_polygon(corners: Sequence[Sequence[float]], entries: Sequence[int]) -> Sequence[Sequence[float]]:
+    """Return the part of a convex polygon where none of these entries of the corners, by their numbers, is negative.
 
     Corners are rows of as many numbers as one likes, all of them linear over the polygon: places, then distances from
     what it is to be cut off at. Fewer than three are left of a polygon that is outside, or only touches.
     Source: Sutherland and Hodgman 1974.
     """
-    for k in range(first, len(corners[0]) if corners else 0):
-        if all(corner[k] >= 0.0 for corner in corners):
-            continue
+    for k in entries:
         kept: list[Sequence[float]] = []
         before = corners[-1] if corners else ()
         for corner in corners:

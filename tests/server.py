@@ -270,7 +270,7 @@ class Browser:
     def move(self, name: str, value: Any) -> None:
         """Set an input by its name: a slider is moved, into anything else is typed, or chosen."""
         kind = self._session.params.kinds.get(name.partition(".")[0])
-        if isinstance(kind, Slider | Numbers):
+        if isinstance(kind, Slider | Numbers) or name in [dial.handle for dial in self._session.sim.dials]:
             self._host.call(lambda: self._commands.slide(name, value))
             return
         text = "" if value is None else spell(tuple(value) if isinstance(value, list) else value)

@@ -43,7 +43,7 @@ class Sessions:
 
     def uploaded_bytes(self) -> int:
         """Bytes of all files that sessions keep."""
-        return sum(session.uploaded_bytes for session in self._by_room.values())
+        return sum(sum(session.uploads.values()) for session in self._by_room.values())
 
     def given(self, sim: Sim[Any, Any]) -> tuple[Library, ...]:
         """What a sim's functions need besides the parameters."""

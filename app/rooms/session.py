@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from inspect import isgeneratorfunction
+from itertools import chain
 from typing import Any
 
 from pydantic import ValidationError
@@ -25,7 +26,7 @@ from app.trouble import Unknown, error_message
 from sims.kit.entered import entered, number, row
 from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
-from sims.kit.sim import Library, Sim, Step, jsonable
+from sims.kit.sim import Dial, Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
 SOLVED_WITHIN = 20.0
@@ -48,8 +49,8 @@ class Session:
         self.library = library
         self.given = () if library is None else (library,)
         """What the sim's functions need besides the parameters."""
-        self.uploaded, self.uploaded_bytes = "", 0
-        """What the library knows the file as that somebody uploaded, and its size; it stays as long as the session."""
+        self.uploads: dict[str, int] = {}
+        """Bytes of files that people uploaded, by what the library knows them as; they stay while they are shown."""
         self._solver = solver
         self.telling = Telling(self.state)
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
@@ -104,6 +105,9 @@ class Session:
 
     def slide(self, name: str, value: float) -> None:
         """Take what a slider is moved to: of a parameter, or as `angles.2` of one of its entries."""
+        if (dial := self._dial(name)) is not None:
+            self.drag(name, (min(max(value, dial.low), dial.high),))
+            return
         field, dot, part = name.partition(".")
         kind = self.params.kinds.get(field)
         sliders = [each for each in self.params.visible if isinstance(self.params.kinds[each], Slider | Numbers)]
@@ -116,11 +120,28 @@ class Session:
         if name.startswith("/"):
             self._enter_place(name, text)
             return
+        if (dial := self._dial(name)) is not None:
+            self.drag(name, (number(text, (dial.low, dial.high), dial.unit),))
+            return
         try:
             changes = entered(self.sim.offers(self.params, self.solution, *self.given), name, text)
         except LookupError:
             raise Unknown("control, or nothing in it,", f"{name}: {text}", self.params.kinds) from None
+        before = self.params
         self.change(changes)
+        self._ease(before)
+
+    def _ease(self, before: Params) -> None:
+        """Let it be seen how the state comes from the one before, where the sim shows that."""
+        if self.sim.eases is None or self.motion.reduced:
+            return
+        steps = self.sim.eases(before, self.params)
+        if (first := next(steps, None)) is not None:
+            self._set(self.params.moved(first.changes))
+            self.motion.begin(chain([first], steps))
+
+    def _dial(self, name: str) -> Dial[Any, Any] | None:
+        return next((dial for dial in self.sim.dials if dial.handle == name), None)
 
     def _enter_place(self, name: str, text: str) -> None:
         """The same for a box, `/grip.2`, of where a node of the scene is; or for all three, `/grip`."""
@@ -164,7 +185,7 @@ class Session:
         if name == "reset":
             self._set(self.initial)
             return
-        action = next((a for a in self.sim.actions if a.name == name), None)
+        action = next((a for a in self.sim.actions if name in a.names), None)
         if action is None:
             raise Unknown("action", name, ["reset", *(a.name for a in self.sim.actions)])
         if isgeneratorfunction(action.run):  # a motion, whose steps are found as it goes
@@ -186,11 +207,13 @@ class Session:
             take(find())
 
     def upload(self, known_as: str, size: int, changes: Mapping[str, Any]) -> None:
-        """Show a file of some bytes that the library has taken, in place of the one before."""
-        self.forget(self.uploaded)
-        self.uploaded, self.uploaded_bytes = known_as, size
+        """Show a file of some bytes that the library has taken; those that it takes the place of are forgotten."""
+        self.uploads[known_as] = size
         self.motion.stop()
         self._set(self.params.moved(changes))
+        shown = self.params.__dict__.values()
+        for name in [name for name in self.uploads if name not in shown]:
+            self.forget(name)
 
     def take(self, found: Any) -> None:
         """Take what was found in a text of somebody's own. Raises ValueError in words, or pydantic's."""
@@ -199,6 +222,7 @@ class Session:
 
     def forget(self, known_as: str) -> None:
         """Have the library forget an uploaded file."""
+        self.uploads.pop(known_as, None)
         if self.library is not None:
             self.library.remove(known_as)
 
@@ -308,7 +332,8 @@ class Session:
 
     def end(self) -> list[asyncio.Task[None]]:
         """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
-        self.forget(self.uploaded)
+        for name in [*self.uploads]:
+            self.forget(name)
         self.motion.stop()
         self.telling.end()
         working = self._tasks()

@@ -21,9 +21,8 @@ def described() -> list[tuple[Sim[Any, Any], list[tuple[str, str, str, str]], di
 
 
 def _parameters(sim: Sim[Any, Any]) -> list[tuple[str, str, str, str]]:
-    start = sim.params().model_dump(mode="json")
     return [
-        (name, json.dumps(start[name]), allowed(sim.params, name), _words(field.description, sim.params.kinds[name]))
+        (name, json.dumps(field.default), allowed(sim.params, name), _words(field.description, sim.params.kinds[name]))
         for name, field in sim.params.model_fields.items()
     ]
 

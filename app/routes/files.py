@@ -79,14 +79,15 @@ async def paste(request: Request, given: Given, slug: str, room: str, key: str) 
     try:
         text = (await request.body()).decode("utf-8-sig")
         loop = asyncio.get_running_loop()
-        session.take(await loop.run_in_executor(given.sessions.aside, session.sim.paste.found, text))
+        found = await loop.run_in_executor(given.sessions.aside, session.sim.paste.found, text)
+        session.take(found)
     except UnicodeDecodeError:
         raise Refusal(422, "This isn’t text in UTF-8. Nothing has changed.") from None
     except (ValidationError, GeometryError) as error:
         raise Refusal(422, f"{error_message(session.sim, error)['message']}. Nothing has changed.") from None
     except ValueError as error:
         raise Refusal(422, f"{error} Nothing has changed.") from None
-    return JSONResponse({}, headers=ANYWHERE)
+    return JSONResponse({"said": session.sim.paste.says(found)}, headers=ANYWHERE)
 
 
 @router.get("/sims/{slug}/s/{room}/{key}/result/{name}")

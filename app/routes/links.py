@@ -84,8 +84,9 @@ WORDS = {"theme": ("light", "dark"), "controls": ("1", "0")}
 
 
 def controls(sim: Sim[Any, Any]) -> list[str]:
-    """What `only` may name: parameters that have a control, and actions."""
-    return [*sim.params.visible, *(action.name for action in sim.actions)]
+    """What `only` may name: parameters and dials that have a control, and actions."""
+    pressed = [name for action in sim.actions for name in action.names]
+    return [*sim.params.visible, *(dial.handle for dial in sim.dials), *pressed]
 
 
 def is_view(text: str) -> bool:

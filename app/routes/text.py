@@ -79,10 +79,10 @@ def _spelled(sim: Sim[Any, Any], name: str, text: str) -> str:
 
 def _fields(sim: Sim[Any, Any], params: Params, library: tuple[Library, ...]) -> Iterator[Field]:
     offers = sim.offers(params, None, *library)
-    for name in params.visible:
+    for name in params.arranged:
         kind, value = params.kinds[name], getattr(params, name)
-        about = sim.params.model_fields[name].description or ""
-        yield Field(name, offers.label(name), about, _shown(value), unit_of(kind), _options(kind, name, offers))
+        words = offers.label(name), offers.about(name)
+        yield Field(name, *words, _shown(value), unit_of(kind), _options(kind, name, offers))
 
 
 def _shown(value: Any) -> str:

@@ -65,7 +65,7 @@ class Commands:
         except NotMeant as error:
             self._answer({**refused(str(error)), "control": name})
         except Exception as error:
-            self._answer({**error_message(self._session.sim, error), "control": name})
+            self._answer({**error_message(self._session.sim, error, beside=True), "control": name})
 
     def drag(self, name: str, place: tuple[float, ...]) -> None:
         """Take the place where a handle was dragged to."""

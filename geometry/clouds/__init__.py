@@ -7,7 +7,7 @@ may raise to end it.
 from .alignment import Observability, observability, onto_planes, onto_points
 from .clusters import Clusters, clusters
 from .neighbours import Neighbours, spacing
-from .normals import Normals, normals, orient
+from .normals import Neighbourhood, Normals, neighbourhood, normals, orient
 from .outliers import Outliers, outliers
 from .picking import Pick, pick
 from .planes import Plane, fit_plane, ransac_plane
@@ -20,6 +20,7 @@ __all__ = [
     "SETTLED",
     "Clusters",
     "Indices",
+    "Neighbourhood",
     "Neighbours",
     "Normals",
     "Observability",
@@ -40,6 +41,7 @@ __all__ = [
     "icp",
     "mesh_area",
     "mesh_volume",
+    "neighbourhood",
     "normals",
     "observability",
     "onto_planes",

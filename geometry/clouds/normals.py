@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array, Mask
-from ..errors import as_finite_array, as_number
+from ..errors import GeometryError, as_finite_array, as_number
 from .eigen import least_eigenvectors
 from .neighbourhoods import covariances
 from .neighbours import Neighbours
-from .points import Progress, in_chunks, silent
+from .points import Indices, Progress, as_cloud, in_chunks, silent
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +59,47 @@ def normals(
 
     in_chunks(work, len(near), progress)
     return found
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbourhood:
+    """The nearest points of one, and the plane through their mean that they are nearest to.
+
+    `rows` (k,) of the cloud, the nearest first, which is the point itself. `eigenvalues` (3,), rising, are their
+    variances in m² along the `axes` (3, 3), by rows, from their mean `center` (3,): the first axis is the plane's
+    normal, whichever way.
+    """
+
+    rows: Indices
+    center: Array
+    eigenvalues: Array
+    axes: Array
+
+    @property
+    def flat(self) -> bool:
+        """Whether there is one plane: the points aren't on a line, or in one place."""
+        return bool(self.eigenvalues[1] - self.eigenvalues[0] > 1e-12 * self.eigenvalues[2])
+
+
+def neighbourhood(points: npt.ArrayLike, index: int, neighbors: int = 16) -> Neighbourhood:
+    """Look at the nearest points of one of points (N, 3), itself included: what `normals` sums up of each.
+
+    Raises GeometryError if a point isn't finite, there is none of that index, or there are to be no neighbours.
+    Source: Hoppe et al. 1992, sec. 3.2.
+    """
+    cloud = as_cloud("points", points)
+    if not 0 <= index < len(cloud):
+        raise GeometryError("index", index, f"from 0 to {len(cloud) - 1}")
+    count = min(int(as_number("neighbors", neighbors, least=1)), len(cloud))
+    offsets = cloud - cloud[index]
+    squares = np.vecdot(offsets, offsets)
+    squares[index] = -1.0  # before its copies
+    rows = np.argpartition(squares, count - 1)[:count]
+    rows = rows[np.argsort(squares[rows], kind="stable")]
+    mean = offsets[rows].mean(axis=0)
+    near = offsets[rows] - mean
+    values, vectors = np.linalg.eigh(near.T @ near / count)
+    return Neighbourhood(rows, cloud[index] + mean, np.maximum(values, 0.0), vectors.T)
 
 
 def orient(vectors: Array, points: Array, sensor: npt.ArrayLike | None = None) -> None:

@@ -25,8 +25,9 @@ def outliers(
 ) -> Outliers:
     """Find the points (N, 3) whose mean distance to their nearest neighbours is unusual.
 
-    The most allowed is the mean over the cloud plus a number of standard deviations. As in Open3D a point counts
-    as one of its own neighbours, at distance zero. A point alone isn't an outlier.
+    The most allowed is the mean over the cloud plus a number of standard deviations. Of `neighbors` nearest points the
+    first is the point itself, as in Open3D, but its distance of zero isn't in the mean: of 16 the other 15 are.
+    Which points are kept is the same. A point alone isn't an outlier.
     Raises GeometryError if a point isn't finite, or there are to be fewer than two neighbours.
     Source: Rusu et al. 2008, "Towards 3D point cloud based object maps", sec. 4.1.
     """
@@ -36,7 +37,7 @@ def outliers(
     ordered = np.empty(len(near))
 
     def work(rows: slice) -> None:
-        ordered[rows] = near.nearest(rows, count)[0].mean(axis=1)
+        ordered[rows] = near.nearest(rows, count)[0].sum(axis=1) / max(count - 1, 1)
 
     in_chunks(work, len(near), progress)
     distance = near.unordered(ordered)

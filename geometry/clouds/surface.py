@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, QhullError
 
 from ..arrays import Array, Mask, norm
@@ -21,8 +23,8 @@ WIDEST = 1e75
 class Surface:
     """A triangle mesh on given points (N, 3): `triangles` (T, 3) are their indices, counter-clockwise from outside.
 
-    `solid` (T,) says which triangles bound a solid; the others are sheets, seen from both sides. `area` is in m²,
-    `volume`, of the solids, in m³.
+    `solid` (T,) says which triangles bound a solid; the others are sheets, seen from both sides. `area` is in m².
+    `volume`, in m³, is what the ball can't get into from outside: the solids, and what sheets enclose without a gap.
     """
 
     points: Array
@@ -48,10 +50,12 @@ def alpha_shape(points: npt.ArrayLike, alpha: float) -> Surface:
     regular = kept[:, None] & ~other
     once = ~kept[:, None] & ~other & (neighbours < np.arange(len(tetrahedra))[:, None])
     solids = _faces(tetrahedra, regular)
-    sheets = _faces(tetrahedra, _resting(cloud, tetrahedra, neighbours, once, alpha))
-    triangles = np.concatenate([solids, sheets])
+    resting = _resting(cloud, tetrahedra, neighbours, once, alpha)
+    triangles = np.concatenate([solids, _faces(tetrahedra, resting)])
     solid = np.arange(len(triangles)) < len(solids)
-    return Surface(cloud, triangles, solid, mesh_area(cloud, triangles), mesh_volume(cloud, solids))
+    inside = ~_reached(neighbours, once & ~resting)
+    volume = mesh_volume(cloud, _faces(tetrahedra, np.broadcast_to(inside[:, None], neighbours.shape)))
+    return Surface(cloud, triangles, solid, mesh_area(cloud, triangles), volume)
 
 
 def mesh_area(points: Array, triangles: Indices) -> float:
@@ -95,6 +99,19 @@ def _circumradii(corners: Array) -> Array:
     centre = uu * vw + vv * np.cross(w, u) + ww * np.cross(u, v)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.where(volume > 0.0, norm(centre) / volume, np.inf))
+
+
+def _reached(neighbours: Indices, passes: Mask) -> Mask:
+    """Which tetrahedra (M,) the ball's centre comes to from outside, through the faces (M, 4) that let it pass.
+
+    It goes along an edge of the Voronoi diagram, between the two spheres of a face that it doesn't rest on.
+    """
+    tetra, face = np.nonzero(passes)
+    outside = len(neighbours)
+    beyond = np.where(neighbours[tetra, face] < 0, outside, neighbours[tetra, face])
+    ways = coo_array((np.ones(len(tetra), bool), (tetra, beyond)), shape=(outside + 1, outside + 1))
+    part = connected_components(ways, directed=False)[1]
+    return np.asarray(part[:outside] == part[outside])
 
 
 def _resting(cloud: Array, tetrahedra: Indices, neighbours: Indices, faces: Mask, alpha: float) -> Mask:

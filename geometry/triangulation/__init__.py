@@ -3,7 +3,7 @@
 Each method takes the left and the right camera and pixels (..., 2), and returns a `Triangulation`.
 """
 
-from .dlt import triangulate_dlt
+from .dlt import dlt_equations, triangulate_dlt
 from .midpoint import Midpoint, triangulate_midpoint
 from .optimal import correct_matches, triangulate_optimal
 from .result import Status, Triangulation, reprojection_errors
@@ -19,6 +19,7 @@ __all__ = [
     "depth_from_disparity",
     "depth_sigma",
     "disparity",
+    "dlt_equations",
     "ellipsoid_axes",
     "monte_carlo",
     "pixel_noise",

@@ -12,21 +12,36 @@ from .result import Triangulation, conclude, pixel_pairs
 
 
 def triangulate_dlt(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Triangulation:
-    """Triangulate pixels (..., 2) by the least singular vector of the equations x (p₃·X) − p₁·X = 0.
+    """Triangulate pixels (..., 2) by the least singular vector of the equations of `dlt_equations`.
 
-    In normalised image coordinates, with P = [R | t] in the world as it is: the same as triangulatePoints of
-    OpenCV. What is least there isn't an error in pixels, and changes with the choice of the world frame.
+    The same as triangulatePoints of OpenCV. What is least there isn't an error in pixels, and changes with the choice
+    of the world frame.
     Raises GeometryError at zero baseline.
     Source: Hartley and Zisserman 2004, sec. 12.2.
     """
     between = baseline(left, right)
     pairs, defined = pixel_pairs(uv_left, uv_right)
     with np.errstate(all="ignore"):
-        rows = [*_equations(left, pairs[..., :2]), *_equations(right, pairs[..., 2:])]
-        X = np.linalg.svd(stack(*rows).reshape(*defined.shape, 4, 4))[2][..., 3, :]
+        X = np.linalg.svd(_matrix(left, right, pairs))[2][..., 3, :]
         point = components(X[..., :3] / X[..., 3:])
         parallax = _parallax(left.center.tolist(), between.tolist(), point)
         return Triangulation(*conclude((left, right), point, parallax, True, defined))
+
+
+def dlt_equations(left: Camera, right: Camera, uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Array:
+    """Return A (..., 4, 4) of the equations A X = 0 of a point X, homogeneous in the world, from pixels (..., 2).
+
+    Two rows for the left pixel, then two for the right: x (p₃·X) − p₁·X and y (p₃·X) − p₂·X, in normalised image
+    coordinates and with P = [R | t]. NaN for pixels that aren't defined.
+    Source: Hartley and Zisserman 2004, sec. 12.2.
+    """
+    pairs, defined = pixel_pairs(uv_left, uv_right)
+    return np.where(defined[..., None, None], _matrix(left, right, pairs), np.nan)
+
+
+def _matrix(left: Camera, right: Camera, pairs: Array) -> Array:
+    rows = [*_equations(left, pairs[..., :2]), *_equations(right, pairs[..., 2:])]
+    return stack(*rows).reshape(*pairs.shape[:-1], 4, 4)
 
 
 def _equations(camera: Camera, pixels: Array) -> list[Any]:

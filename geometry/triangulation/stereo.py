@@ -12,15 +12,17 @@ def disparity(uv_left: npt.ArrayLike, uv_right: npt.ArrayLike) -> Array:
     return np.asarray(as_array("uv_left", uv_left, 2)[..., 0] - as_array("uv_right", uv_right, 2)[..., 0])
 
 
-def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float) -> Array:
-    """Return the depth Z = f b / d (...) in metres of a disparity (...) in pixels, NaN unless above 0.
+def depth_from_disparity(disparity: npt.ArrayLike, baseline: float, focal: float, doffs: float = 0.0) -> Array:
+    """Return the depth Z = f b / (d + doffs) (...) in metres of a disparity d (...) in pixels.
 
-    It is NaN too where the depth is beyond all numbers.
+    doffs is how much farther right the right principal point is, in pixels. NaN unless d + doffs is above 0, and where
+    the depth is beyond all numbers.
 
     baseline in metres, focal in pixels, both above 0: GeometryError otherwise.
-    Source: Szeliski 2022, "Computer Vision", eq. 12.1.
+    Source: Szeliski 2022, "Computer Vision", eq. 12.1; with doffs, Scharstein et al. 2014, the calibration of their
+    data sets.
     """
-    d = as_array("disparity", disparity)
+    d = as_array("disparity", disparity) + as_number("doffs", doffs)
     scale = as_number("focal", focal, above=0.0) * as_number("baseline", baseline, above=0.0)
     with np.errstate(over="ignore"):
         depth = scale / np.where(np.isfinite(d) & (d > 0.0), d, np.nan)

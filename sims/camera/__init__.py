@@ -6,13 +6,15 @@ a name is followed from the world to its pixel.
 
 from __future__ import annotations
 
-from sims.camera import actions
+from sims.camera import actions, calibration
 from sims.camera.panes import panes
-from sims.camera.params import CameraParams
+from sims.camera.params import OWN, POSE, CameraParams
 from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
 from sims.camera.scene import CameraScene, seen
 from sims.camera.solution import CameraSolution, solve
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.camera.window import USUAL, view
+from sims.kit.paste import Paste
+from sims.kit.sim import Action, Contract, Objective, Sim
 
 __all__ = ["CONTRACT", "SIM", "CameraParams", "CameraSolution", "solve"]
 
@@ -33,7 +35,8 @@ SIM = Sim(
     readouts=readouts,
     folds=(WORKED, ALL, MATRIX,),
     describe=describe,
-    view=View((-4.28, -7.87, 4.4), (0.05, -0.37, -0.6), 3.3),
+    view=USUAL,
+    view_of=view,
     seen=seen,
     panes=panes,
     actions=(
@@ -41,7 +44,16 @@ SIM = Sim(
             "dolly-zoom", "Dolly zoom", "Move and zoom together, so that the house stays as tall in the picture",
             actions.dolly_zoom,
         ),
-        Action("look", "Look at the subject", "Turn the camera to the middle of the house", actions.look),
+        Action("look", "Look at the house", "Turn the camera to the middle of the house", actions.look, POSE),
+    ),
+    paste=Paste(
+        group=OWN,
+        title="Calibration",
+        about="What OpenCV, ROS (camera_info) or Kalibr wrote of a camera: its matrix, picture size and distortion",
+        example=calibration.EXAMPLE,
+        read=calibration.read,
+        changes=calibration.changes,
+        endings=(".yaml", ".yml", ".xml", ".json", ".txt"),
     ),
     handles={"/eye": actions.hold_eye, "/look": actions.hold_look, "principal": actions.hold_principal},
     states={
@@ -51,7 +63,13 @@ SIM = Sim(
         "behind": {"selected": "back-post"},
         "outside": {"selected": "far-post", "pan": 40},
         "looking back": {"pan": 180},
-        "no scale": {"projection": "orthographic", "pan": 180},
+        "no scale": {"projection": "weak", "position": (0.0, 20.0, 1.2)},
+        "orthographic from behind": {"projection": "orthographic", "pan": 180},
+        "through": {"through": True, "pan": 10, "roll": 20, "cx": 200},
+        "through, orthographic": {"through": True, "projection": "orthographic", "tilt": -15},
+        "barrel": {"k1": -0.3, "k2": 0.08, "p1": 0.001},
+        "cushion": {"k1": 0.4, "fx": 400, "fy": 400},
+        "a photograph": {"width": 4000, "height": 3000, "fx": 4708, "fy": 4712, "cx": 1987, "cy": 1510, "k1": -0.05},
         "straight down": {"position": (-1.0, 1.0, 8.0), "tilt": -90, "selected": "cube-left"},
         "in the house": {"position": (-1.47, 1.6, 0.9), "fx": 300, "fy": 300, "selected": "roof-far"},
         "in the camera's plane": {"position": (0.0, -0.6, 1.2), "selected": "cube-left"},
@@ -63,8 +81,11 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="fx fy cx cy skew position pan tilt roll projection show_rays show_frustum",
-    solution="K R t P center fov_x fov_y points",
+    parameters=(
+        "fx fy cx cy skew width height ortho_scale k1 k2 p1 p2 k3 position pan tilt roll projection through show_rays"
+        " show_frustum"
+    ),
+    solution="K R t P center fov_x fov_y points scale scale_depth distorted",
     link=(
         "fx=800&fy=700&cx=300&cy=200&skew=10&position=1,-5.5,2&pan=20&tilt=-10&roll=5&projection=weak"
         "&show_rays=0&show_frustum=0"

@@ -9,16 +9,23 @@ from typing import Any
 import numpy as np
 
 from geometry.camera import aim
+from sims.camera.lens import pixel_at
 from sims.camera.params import CameraParams
 from sims.camera.solution import LIFT, camera_of
-from sims.camera.world import MIDDLE, SUBJECT, Place
 from sims.kit.sim import Step
+from sims.kit.types import Place
+from sims.kit.world import MIDDLE, SUBJECT
 
 LEGS = 12
 SECONDS = 3.0
 NEAR = 0.5
 """Metres: a subject nearer than this, or behind, is looked at before the camera moves."""
 ZOOM = 2.0
+WORDS = {
+    ZOOM: "It goes away and zooms in: the house stays as tall, and what is behind it grows.",
+    1.0 / ZOOM: "It comes nearer and zooms out: the house stays as tall, and what is behind it shrinks.",
+}
+"""What is to be seen, by the factor of the depth."""
 WIDE = 400.0
 """Pixels of focal length below which the dolly zoom goes away and zooms in, instead of the other way."""
 
@@ -36,7 +43,8 @@ def hold_look(p: CameraParams, place: tuple[float, ...]) -> dict[str, Any]:
 
 def hold_principal(p: CameraParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The principal point in the picture."""
-    return {"cx": place[0], "cy": place[1]}
+    u, v = pixel_at(p, place)
+    return {"cx": u, "cy": v}
 
 
 def turned_to(p: CameraParams, place: tuple[float, ...]) -> dict[str, Any]:
@@ -66,7 +74,7 @@ def dolly_zoom(p: CameraParams) -> Iterator[Step]:
     for factor in near:
         legs = [_leg(p, factor, (k + 1) / LEGS) for k in range(LEGS)]
         if all(_fits(p, leg) for leg in legs):
-            yield from (Step(leg, SECONDS / LEGS, even=True) for leg in legs)
+            yield from (Step(leg, SECONDS / LEGS, even=True, words=WORDS[factor]) for leg in legs)
             return
 
 

@@ -1,42 +1,43 @@
-"""The picture that the camera takes, in pixels."""
+"""The picture that the camera takes, with the chosen point's way into it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
-import numpy as np
-
+from sims.camera.lens import shown, size
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, NamedPoint, VanishingPoint
-from sims.camera.world import ROLES, TITLES
-from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
-from sims.kit.readout import THIN, figure
+from sims.kit.readout import Chain, Link, figure
+from sims.kit.world import TITLES
+from sims.kit.world_drawing import draw_sight
 
-WIDTHS = {"ink": 1.6, "x": 1.6, "y": 2.0, "z": 2.4}
-ROLE: Any = np.array([list(WIDTHS).index(role) for role in ROLES])
 ARROW = 70.0
 TOWARDS = {"across": ("eave-near-left", "wall-near-left"), "along": ("roof-far", "wall-far-right"),
            "up": ("eave-near-left", "eave-far-right")}  # fmt: skip
 """Ends of edges that are drawn on to where they meet."""
+TWIN = "5 4"
+"""Dashes of what would be seen without distortion."""
 
 
 def panes(p: CameraParams, s: CameraSolution) -> Sequence[Pane]:
     """One picture."""
-    picture = Picture("picture", "Picture", WIDTH, HEIGHT)
-    roles = ROLE[s.shown]
-    for k, (role, width) in enumerate(WIDTHS.items()):
-        picture.strokes(map(tuple, s.wires[roles == k].reshape(-1, 4).tolist()), role, width=width)
+    picture = Picture("picture", "Picture", *size(p))
+    if s.seen is not None:
+        draw_sight(picture, s.seen)
+    if s.straight is not None:
+        edges = s.straight.outlines().reshape(-1, 4).tolist()
+        picture.strokes([(a, b, c, d) for a, b, c, d in edges], "ghost", width=1.2, dash=TWIN)
     _pixel_axes(picture)
     if p.show_vanishing:
         for meet in s.vanishing:
-            _vanishing(picture, s, meet)
+            _vanishing(picture, p, s, meet)
     for point in s.points:
-        _point(picture, point, chosen=point.name == p.selected)
+        _point(picture, p, point, chosen=point.name == p.selected)
     if s.frustum is not None:
-        picture.handle("principal", (p.cx, p.cy), "Principal point", "c")
-    return (picture.pane(_note(p, s)),)
+        where = f"{p.cx:.1f}, {p.cy:.1f} pixels"
+        picture.handle("principal", shown(p, (p.cx, p.cy)), "Principal point", "c", where=where)
+    return (picture.pane(_note(p, s), large=True, line=Chain(TITLES[p.selected], list(_chain(p, s))).html()),)
 
 
 def _pixel_axes(picture: Picture) -> None:
@@ -45,28 +46,32 @@ def _pixel_axes(picture: Picture) -> None:
         picture.text(at, letter)
 
 
-def _vanishing(picture: Picture, s: CameraSolution, meet: VanishingPoint) -> None:
+def _vanishing(picture: Picture, p: CameraParams, s: CameraSolution, meet: VanishingPoint) -> None:
     """A cross where parallels meet, with two edges drawn on to it, or a mark at the border."""
     if meet.pixel is not None and meet.in_image:
-        u, v = meet.pixel
-        ends = [s.point(name).pixel for name in TOWARDS[meet.name]]
-        picture.strokes([(*end, u, v) for end in ends if end], meet.role, width=1, dash="3 5")
-        picture.cross(meet.pixel, meet.role)
-        picture.text((u, v - 18.0), meet.name, meet.role, anchor="middle", size=24)
+        u, v = shown(p, meet.pixel)
+        if not s.distorted:  # else the edges aren't straight
+            ends = [s.point(name).pixel for name in TOWARDS[meet.name]]
+            picture.strokes([(*shown(p, end), u, v) for end in ends if end], meet.role, width=1, dash="3 5")
+        picture.cross((u, v), meet.role)
+        picture.text((u, v - 18.0), meet.name, meet.role, anchor="middle", size=20)
     elif meet.homogeneous is not None:
-        picture.outside(meet.homogeneous, meet.role, meet.name, title=f"Vanishing point of what runs {meet.name}")
+        x, y, w = meet.homogeneous
+        k = size(p)[0] / p.width
+        place = (k * x + 0.5 * (k - 1.0) * w, k * y + 0.5 * (k - 1.0) * w, w)
+        picture.outside(place, meet.role, meet.name, title=f"Vanishing point of what runs {meet.name}")
 
 
-def _point(picture: Picture, point: NamedPoint, *, chosen: bool) -> None:
-    name, pixel = point.name, point.pixel
-    if pixel is None:
+def _point(picture: Picture, p: CameraParams, point: NamedPoint, *, chosen: bool) -> None:
+    name = point.name
+    if point.pixel is None:
         return
-    title = TITLES[name]
+    title, place = TITLES[name], shown(p, point.pixel)
     if point.in_image:
-        picture.point(name, pixel, title, chosen=chosen, label=title.lower() if chosen else "")
+        picture.point(name, place, title, chosen=chosen, label=title.lower() if chosen else "")
     else:
         words = title.lower() if chosen else ""
-        picture.outside((*pixel, 1.0), "held" if chosen else "ghost", words, link=name, title=title, chosen=chosen)
+        picture.outside((*place, 1.0), "held" if chosen else "ghost", words, link=name, title=title, chosen=chosen)
 
 
 def _note(p: CameraParams, s: CameraSolution) -> str:
@@ -74,8 +79,30 @@ def _note(p: CameraParams, s: CameraSolution) -> str:
     point = s.point(p.selected)
     if s.frustum is None:
         return "⚠ no scale, no picture"
+    name = TITLES[p.selected].lower()
     if point.pixel is None:
-        return f"⚠ {TITLES[p.selected].lower()} is behind"
-    u, v = point.pixel
-    where = "" if point.in_image else ", outside"
-    return f"({figure(u, 1)}, {figure(v, 1)}){THIN}px{where}"
+        return f"⚠ {name} is {'behind' if point.depth <= 0.0 else 'beyond the lens'}"
+    where = "" if point.in_image else " is outside"
+    return f"{name}{where}{'; dashed: without distortion' if s.distorted else ''}"
+
+
+def _row(values: Sequence[float], digits: int) -> str:
+    return f"({', '.join([figure(value, digits) for value in values])})"
+
+
+def _chain(p: CameraParams, s: CameraSolution) -> Iterator[Link]:
+    """The chosen point from the world to its pixel, each step with what leads to it."""
+    point = s.point(p.selected)
+    x, y, z = point.camera
+    yield Link("", "world, m", _row(point.world, 2))
+    yield Link("R, t", "camera, m", _row(point.camera, 2), "position pan tilt roll")
+    if point.pixel is None:
+        yield Link("", "pixel", "⚠ behind" if z <= 0.0 else "⚠ not seen")
+        return
+    if p.projection == "orthographic":
+        yield Link("no z", "x, y in m", _row((x, y), 2))
+        yield Link("×", "pixel", _row(point.pixel, 1), "ortho_scale cx cy")
+    else:
+        divisor = s.scale_depth or z
+        yield Link("÷ mean z" if s.scale_depth else "÷ z", "normalised", _row((x / divisor, y / divisor), 2))
+        yield Link("lens" if s.distorted else "K", "pixel", _row(point.pixel, 1), "fx fy cx cy skew")

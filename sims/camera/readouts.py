@@ -8,15 +8,14 @@ import numpy as np
 
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, NamedPoint
-from sims.camera.world import NAMES, TITLES
 from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.world import NAMES, TITLES
 
 SAME = 1.0
 """Pixels within which two points are said to share a pixel."""
-BY = {"orthographic": "the depth of the house's middle", "weak": "the mean depth of all points"}
-
-
+NO_SCALE = "No picture: its scale comes from the mean depth of the points in front of the camera, and no point is."
 WORKED, MATRIX, ALL = "The point, step by step", "P, and what it tells", "All points"
+"""Titles of folds."""
 IN_K = (("fx", "skew", "cx"), ("", "fy", "cy"), ("", "", ""))
 POSE = "pan tilt roll"
 IN_POSE = ((POSE, POSE, POSE, "position"),) * 3
@@ -26,19 +25,23 @@ def caption(p: CameraParams, s: CameraSolution) -> str:
     """What to do, or what to see."""
     if s.frustum is None:
         return "There is nothing to take the picture’s scale from: move or turn the camera."
-    if p.projection == "orthographic":
-        return "Without perspective what is far is as large as what is near: move away and see."
-    if p.projection == "weak":
-        return "One depth for everything: near and far things keep their sizes, but moving still changes them all."
-    return "Zoom, or move and turn the camera: see which entries of K and [R | t] change, and what the picture does."
+    if p.through:
+        return "You look through the camera: the frame is what its picture shows."
+    if s.distorted:
+        return "The lens bends straight lines; dashed is what K alone would show."
+    if s.scale is not None:
+        metre = f"A metre is {quantity(s.scale, 'px', 0)}"
+        mean = s.scale_depth and quantity(s.scale_depth, "m", 2)
+        return f"{metre} everywhere: fx over the mean depth, {mean}." if mean else f"{metre}, near and far: move back."
+    return "Move, turn or zoom: see which numbers change."
 
 
 def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(p, s)
-    yield Formula("Intrinsics: camera axes to pixels", symbol("K"), mathml(s.K, 1, links=IN_K))
+    yield Formula("Intrinsics", symbol("K"), mathml(s.K, 1, links=IN_K))
     yield Formula(
-        "Pose: world to camera axes",
+        "Pose",
         "<mrow><mo>[</mo><mi>R</mi><mo>|</mo><mi>t</mi><mo>]</mo></mrow>",
         mathml(np.column_stack([s.R, s.t]), links=IN_POSE),
     )
@@ -46,32 +49,27 @@ def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
     yield from _worked(p, s)
     yield Fold(MATRIX)
     if s.P is not None:
-        what = "K [R | t]" if s.scale_depth is None else "affine, its last row has no R"
+        what = "K [R | t]" if s.scale is None else "affine, its last row has no R"
         yield Formula(f"Projection: {what}", symbol("P"), mathml(s.P, 2))
     yield Formula("Centre −Rᵀt", symbol("C"), row(s.center.tolist()), "m")
-    if s.scale_depth is None:
+    if s.scale is None:
         yield Formula("Field of view, across", symbol("α", "x"), mathml(s.fov_x, 2), "°")
         yield Formula("Field of view, down", symbol("α", "y"), mathml(s.fov_y, 2), "°")
     yield from _taken_apart(s)
     if s.subject.height is not None:
         yield Formula("Height of the house in the picture", symbol("h"), mathml(s.subject.height, 1), "px")
     yield Fold(ALL)
+    if hidden := sum(point.depth <= 0.0 for point in s.points):
+        ending = "point is behind the camera and has" if hidden == 1 else "points are behind the camera and have"
+        yield Note(f"{hidden} {ending} no pixel.")
     yield _table(p, s)
 
 
 def _status(p: CameraParams, s: CameraSolution) -> Iterator[Note]:
     if s.frustum is None:
-        yield Note(
-            f"No picture: its scale comes from {BY[p.projection]}, and that isn't in front of the camera.", "warn"
-        )
-    elif s.scale_depth is not None:
-        yield Note(f"Every point is divided by one depth, {quantity(s.scale_depth, 'm', 2)}: {BY[p.projection]}.")
-    hidden = sum(point.depth <= 0.0 for point in s.points)
-    if hidden == len(s.points):
+        yield Note(NO_SCALE, "warn")
+    if all(point.depth <= 0.0 for point in s.points):
         yield Note("All points are behind the camera: there are no pixels.", "warn")
-    elif hidden:
-        ending = "point is behind the camera and has" if hidden == 1 else "points are behind the camera and have"
-        yield Note(f"{hidden} {ending} no pixel.")
     yield from _together(p, s)
 
 
@@ -98,13 +96,18 @@ def _worked(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:
             yield Note(f"Depth {depth}: not in front of the camera, so there is no pixel.", "warn")
         return
     x, y, z = point.camera
-    divisor = s.scale_depth or z
-    words = "its depth" if s.scale_depth is None else "the one depth"
-    yield Formula(
-        f"Normalised: divided by {words}, {quantity(divisor, 'm')}", symbol("x"), row((x / divisor, y / divisor))
-    )
     outside = "" if point.in_image else ", outside the picture"
-    yield Formula(f"Pixel: K x{outside}", symbol("p"), row(point.pixel, 2), "px")
+    if p.projection == "orthographic":
+        yield Formula(f"Pixel: x and y times the scale, from c{outside}", symbol("p"), row(point.pixel, 2), "px")
+        return
+    divisor = s.scale_depth or z
+    words = "its depth" if s.scale_depth is None else "the mean depth"
+    flat = x / divisor, y / divisor
+    yield Formula(f"Normalised: divided by {words}, {quantity(divisor, 'm')}", symbol("x"), row(flat))
+    if s.distorted and point.straight is not None:
+        yield Formula("Without distortion: K x", symbol("p", "0"), row(point.straight, 2), "px")
+    how = "bent by the lens" if s.distorted else "K x"
+    yield Formula(f"Pixel: {how}{outside}", symbol("p"), row(point.pixel, 2), "px")
 
 
 def _taken_apart(s: CameraSolution) -> Iterator[Readout]:
@@ -143,9 +146,9 @@ def describe(p: CameraParams, s: CameraSolution) -> str:
     angles = ", ".join(f"{n} {quantity(getattr(p, n), '°', 0)}" for n in ("pan", "tilt", "roll"))
     point = s.point(p.selected)
     if s.frustum is None:
-        seen = "no picture, its scale isn't in front"
+        seen = "no picture, as nothing in front gives it a scale"
     elif point.pixel is None:
-        seen = "behind the camera, no pixel"
+        seen = "behind the camera, no pixel" if point.depth <= 0.0 else "farther out than the lens shows, no pixel"
     else:
         u, v = (figure(value, 0) for value in point.pixel)
         seen = f"at pixel {u}, {v}{'' if point.in_image else ', outside the picture'}"

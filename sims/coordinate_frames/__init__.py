@@ -34,16 +34,20 @@ SIM = Sim(
     view=View((-2.7, -3.5, 2.15), (0.0, 0.0, 0.0), 1.85),
     seen=seen,
     actions=(
+        Action("shift", "Move the second frame", "T moves a point’s numbers, never a direction’s", actions.shift),
         Action("rule", "Animate the rule", "Fingers from X to Y, thumb along Z", actions.sweep),
         Action("infinity", "Let w go to 0", "The point runs away; a direction is left", actions.run_away),
     ),
-    handles={"/point": actions.hold_point},
+    handles={"/point": actions.hold_point, "/second": actions.hold_origin},
+    eases=actions.turn,
     states={
-        "left-handed OpenGL": {"handedness": "left"},
+        "left-handed OpenGL": {"convention": "opengl", "handedness": "left", "show_rule": True},
         "own handedness, said": {"handedness": "right", "to": "ros"},
         "rotation": {"convention": "ros", "to": "camera", "point": (2, -1, 0.5), "rule": 0.5},
         "reflection": {"to": "directx", "grid_xy": True},
-        "right-handed Unreal": {"convention": "unreal", "to": "unreal", "handedness": "right", "rule": 0},
+        "right-handed Unreal": {
+            "convention": "unreal", "to": "unreal", "handedness": "right", "rule": 0, "show_rule": True,
+        },
         "down": {"convention": "aviation", "to": "enu", "grid_xz": True, "grid_yz": True},
         "all grids": {"convention": "camera", "to": "enu", "w": 0.8, **dict.fromkeys(GRIDS, True)},
         "near": {"w": 2},
@@ -54,13 +58,20 @@ SIM = Sim(
         "direction, left-handed": {"point": (-3, 1, 1), "w": 0, "convention": "directx", "to": "ros"},
         "neither": {"point": (0, 0, 0), "w": 0},
         "origin": {"point": (0, 0, 0), "w": 0.5},
-        "without the hand": {"show_rule": False},
+        "one frame": {
+            "convention": "opengl", "to": "opengl", "origin": (0, 0, 0), "point": (1, 0.8, 0.6), "show_rule": True,
+        },
+        "a frame elsewhere": {"convention": "unreal", "to": "directx", "origin": (0.5, 1.0, -0.2), "w": 0.5},
+        "a direction in both": {"convention": "ros", "to": "camera", "origin": (0.5, -1.0, 0.2), "w": 0},
+        "half way": {"convention": "ros", "turn": (1, 1, 0, 0, 0.2), "turn_to": (1, 0, 0, 1, -0.5), "lit": "y"},
+        "with the hand": {"show_rule": True},
     },
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="convention to handedness point w grid_xy grid_xz grid_yz show_rule",
-    solution="basis handedness point_world coordinates matrix determinant homogeneous cartesian",
+    parameters="convention to handedness origin point w grid_xy grid_xz grid_yz show_rule",
+    solution="basis handedness point_world coordinates matrix determinant homogeneous cartesian"
+    " homogeneous_to cartesian_to direction_to origin_world",
     link="convention=ros&to=camera&handedness=left&point=2,-1,0.5&w=0.5&grid_xy=1&grid_yz=1&show_rule=0",
     state={
         "convention": "ros", "to": "camera", "handedness": "left", "point": [2.0, -1.0, 0.5], "w": 0.5,

@@ -32,42 +32,66 @@ def triple(vector: Array) -> Triple:
 
 
 @dataclass(frozen=True)
+class Drawn:
+    """How axes are drawn: as they are, or while they turn from others."""
+
+    wxyz: Quaternion
+    """Turns X and Y of the world to theirs."""
+    side: float
+    """1 where Z of the world so turned lies along theirs, −1 against it, less while it shrinks and grows again.
+
+    Left-handed axes are no turn of the world's.
+    """
+
+
+@dataclass(frozen=True)
 class Axes:
-    """A convention's axes in the world, and how they are drawn."""
+    """A convention's axes in the world."""
 
     basis: Array
     handedness: str
     directions: tuple[str, str, str]
     """Where x, y and z point, in words."""
-    wxyz: Quaternion
-    """Turns X and Y of the world to theirs."""
-    sign: float
-    """1 where Z of the world then lies along theirs, −1 against it: left-handed axes are no turn of the world's."""
-    hand: Triple
-    """Where the knuckles of the hand are, in axes turned by `wxyz`: its fingers go round Z, where there is room."""
+    drawn: Drawn
+
+
+@dataclass(frozen=True)
+class Second:
+    """What leads to the second frame."""
+
+    matrix: Array
+    """(4, 4): to its coordinates from those of the first."""
+    determinant: float
+    origin: Array
+    """Where it begins, in the world."""
 
 
 @lru_cache(maxsize=21)
 def axes(convention: Convention, handed: Handedness | None = None) -> Axes:
     """The axes of a convention, in its own handedness or another; always the same object."""
-    return _axes(convention, handed or frames.handedness(frames.basis(convention)))
+    return _axes(convention, handed or own_hand(convention))
+
+
+@lru_cache(maxsize=7)
+def own_hand(convention: Convention) -> str:
+    """The handedness that a convention has by custom."""
+    return frames.handedness(frames.basis(convention))
 
 
 @lru_cache(maxsize=14)
 def _axes(convention: Convention, handed: str) -> Axes:
     basis = frames.basis(convention, handed)
-    sign = 1.0 if handed == "right" else -1.0
-    w, x, y, z = (quaternion.from_matrix(basis * (1.0, 1.0, sign)) + 0.0).tolist()
-    directions = frames.axis_directions(convention, handed)
-    height = -0.78 if directions[2] == "down" else 0.86  # a Z down through the car: the thumb comes from above
-    return Axes(basis, handed, directions, (w, x, y, z), sign, (0.08, -0.13, sign * height))
+    side = 1.0 if handed == "right" else -1.0
+    w, x, y, z = (quaternion.from_matrix(basis * (1.0, 1.0, side)) + 0.0).tolist()
+    return Axes(basis, handed, frames.axis_directions(convention, handed), Drawn((w, x, y, z), side))
 
 
 @lru_cache(maxsize=128)
-def change(convention: Convention, handed: Handedness | None, to: Convention) -> tuple[Array, float]:
-    """The matrix (4, 4) to a convention's coordinates from another's, and its determinant."""
-    matrix = frames.change_of_basis(axes(convention, handed).basis, axes(to).basis)
-    return matrix, float(np.linalg.det(matrix))
+def second(convention: Convention, handed: Handedness | None, to: Convention, origin: Triple) -> Second:
+    """The frame of another convention's own axes, with its origin given in the first one's coordinates."""
+    basis = axes(convention, handed).basis
+    matrix = frames.change_of_basis(basis, axes(to).basis, origin)
+    return Second(matrix, float(np.linalg.det(matrix)), frames.to_world(origin, basis))
 
 
 CONVENTIONS = tuple(NAMES)

@@ -1,4 +1,4 @@
-"""The scene: a car in the world, the axes of a convention on its roof, and a point in them."""
+"""The scene: a car in the world, the axes of a convention on its roof, others elsewhere, and a point in both."""
 
 from __future__ import annotations
 
@@ -8,68 +8,89 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.coordinate_frames import meshes
-from sims.coordinate_frames.conventions import Axes
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import distance_in_words, in_brackets
+from sims.coordinate_frames.scene_axes import AxesFigure, Box, GhostAxes, Grid
+from sims.coordinate_frames.scene_hand import Hand
 from sims.coordinate_frames.solution import DRAWN, FramesSolution
-from sims.kit.palette import AXES, DASHES
 from sims.kit.scene.stage import Stage
-from sims.kit.types import IDENTITY, ORIGIN, Quaternion
+from sims.kit.types import ORIGIN, Quaternion
 
-LENGTH, GHOST_LENGTH = 1.25, 1.52
-"""Lengths of the axes; those of the second convention reach beyond, so that neither hides the other's letters."""
+LENGTH, APART, TOGETHER = 1.25, 1.0, 1.52
+"""Lengths of the first axes, and of the second ones elsewhere or at the first: there they reach beyond."""
 
 
 def seen(p: FramesParams, s: FramesSolution) -> list[Array]:
     """What must be in sight."""
-    return [] if s.point_world is None else [s.point_world]
+    found = [] if s.point_world is None else [s.point_world]
+    return [*found, *(s.origin_world + APART * s.axes_to.basis.T)] if s.apart else found
 
 
 class FramesScene:
-    """The axes begin on the car's roof."""
+    """The first axes begin on the car's roof."""
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=6.0, height=FLOOR)
         Car(stage)
         stage.ball("/origin", 0.05, "ink")
-        self.axes = AxesFigure(stage, "/axes", LENGTH)
-        self.second = AxesFigure(stage, "/to", GHOST_LENGTH, "′", ghost=True)
+        self.axes = AxesFigure(stage, "/axes")
+        self.second = Second(stage)
         self.grids = {name: Grid(stage, f"/axes/{name}", *pair) for name, pair in GRIDS.items()}
         self.hand = Hand(stage, "/rule")
         self.box = Box(stage, "/axes/box")
         self.point = Point(stage)
+        self.direction = Direction(stage)
 
     def draw(self, p: FramesParams, s: FramesSolution) -> None:
-        self.axes.draw(s.axes)
-        self.second.node.show(s.axes_to is not s.axes)
-        self.second.draw(s.axes_to)
+        self.axes.draw(s.drawn, LENGTH)
+        self.axes.light(p.lit)
+        self.second.draw(s)
         for name, grid in self.grids.items():
-            grid.node.show(getattr(p, name))
-        self.hand.draw(s.axes, p.rule, p.show_rule)
+            grid.draw(s.corner, shown=getattr(p, name))
+        self.hand.draw(s, p.rule, p.show_rule)
         self.box.draw(s.corner)
         self.point.draw(p, s)
+        self.direction.draw(s)
 
 
-class Box:
-    """From the point a dashed line to each plane, along the axis whose coordinate it is; the other edges thin."""
+class Second:
+    """The second frame, the ring by which it is pulled, and how far it is from the first."""
 
-    def __init__(self, stage: Stage, name: str) -> None:
-        self.node = stage.group(name)
-        self.edges = [stage.lines(f"{name}/{axis}", axis, width=2.5, dash=DASHES[axis]) for axis in AXES]
-        self.others = stage.strokes(f"{name}/others", ["ghost"] * 6, width=1.0)
-        stage.linked("point", *self.edges)
+    def __init__(self, stage: Stage) -> None:
+        self.axes = GhostAxes(stage, "/to")
+        self.grip = stage.grip("/second", 0.055)
+        self.shift = stage.lines("/shift", "ghost", width=1.5, dash=(0.03, 0.04))
+        stage.linked("origin", self.shift, self.grip)
 
-    def draw(self, corner: Array | None) -> None:
-        self.node.show(corner is not None)
-        if corner is None:
-            return
-        x, y, z = corner.tolist()
-        feet = (0.0, y, z), (x, 0.0, z), (x, y, 0.0)
-        for edge, foot in zip(self.edges, feet, strict=True):
-            edge.path([foot, (x, y, z)])
-        on_x, on_y, on_z = (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
-        yz, xz, xy = feet
-        self.others.draw([(xy, on_x), (xy, on_y), (xz, on_x), (xz, on_z), (yz, on_y), (yz, on_z)])
+    def draw(self, s: FramesSolution) -> None:
+        place = s.origin_world.tolist()
+        self.axes.node.show(s.apart or s.axes_to is not s.axes)
+        self.axes.node.pose(position=place)
+        self.axes.draw(s.drawn_to, APART if s.apart else TOGETHER)
+        self.grip.pose(position=place)
+        self.shift.show(s.apart)
+        if s.apart:
+            self.shift.path((ORIGIN, place))
+
+
+class Direction:
+    """(x, y, z) with w = 0: one arrow, drawn from either origin; and where the point is for the second."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.arrows = stage.arrows("/directions", "ink", radius=0.014)
+        self.label = stage.label("/directions/label", "same direction", anchor="bottom-left")
+        self.sight = stage.lines("/sight", "held", width=1.5, dash=(0.05, 0.05))
+        stage.linked("w", self.arrows)
+
+    def draw(self, s: FramesSolution) -> None:
+        self.arrows.draw(s.arrows)
+        copied = s.apart and len(s.arrows) > 0 and (s.tip is None or s.cartesian is None)
+        self.label.show(copied)
+        if copied:
+            self.label.pose(position=s.arrows[-1, 1])
+        self.sight.show(s.apart and s.corner is not None)
+        if s.point_world is not None and s.corner is not None:
+            self.sight.path(np.array([s.origin_world, s.point_world]))
 
 
 class Point:
@@ -77,7 +98,7 @@ class Point:
 
     def __init__(self, stage: Stage) -> None:
         self.grip = stage.grip("/point", 0.06)
-        self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-right")
+        self.label = stage.label("/point/label", "", (0.0, 0.0, 0.12), anchor="bottom-center")
         self.ray = stage.lines("/ray", "held", width=1.5)
         stage.linked("w", self.ray)
         self.undivided = stage.ball("/undivided", 0.04, "ghost")
@@ -103,9 +124,9 @@ class Point:
 
 QUARTER: Quaternion = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
 """Turns the car's nose, +X of its own, to forward."""
-Z_ROUND: Quaternion = (0.0, 1.0, 0.0, 0.0)
 FLOOR = -0.66
-ARC_RADIUS = 0.42
+CLEAR = 0.4
+"""Opacity of the car: an axis that leads down is seen through it."""
 WORDS = {
     "forward": ((0.0, 0.95, -0.36), (0.0, 1.38, -0.36), (0.0, 1.58, -0.36)),
     "right": ((1.15, 0.1, FLOOR), (1.5, 0.1, FLOOR), (1.68, 0.1, FLOOR)),
@@ -124,90 +145,7 @@ class Car:
         stage.group("/car").pose(QUARTER)
         parts = meshes.car()
         for name, color in (("body", body), ("glass", glass), ("tyres", tyres), ("trim", trim)):
-            stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"))
+            stage.mesh(f"/car/{name}", parts[name], color, flat=name in ("body", "glass"), opacity=CLEAR)
         for word, (tail, tip, place) in WORDS.items():
             stage.arrow(f"/{word}", "ghost", tail, tip, radius=0.012)
             stage.label(f"/{word}/label", word, place)
-
-
-class AxesFigure:
-    """A convention's axes. What belongs to Z hangs on a node of its own, which turns round for left-handed axes."""
-
-    def __init__(self, stage: Stage, name: str, length: float, mark: str = "", *, ghost: bool = False) -> None:
-        self.node = stage.group(name)
-        self.third = stage.group(f"{name}/third")
-        for axis, path, tip in zip(AXES, (name, name, f"{name}/third"), length * np.eye(3), strict=True):
-            if ghost:
-                line = stage.lines(f"{path}/{axis}", axis, [np.zeros(3), tip], width=2.0, dash=DASHES[axis])
-                stage.linked("to", line)
-            else:
-                stage.linked("convention", stage.arrow(f"{path}/{axis}", axis, np.zeros(3), tip, radius=0.02))
-            stage.label(f"{path}/letter_{axis}", axis.upper() + mark, tip * (1.0 + 0.13 / length))
-
-    def draw(self, axes: Axes) -> None:
-        self.node.pose(axes.wxyz)
-        self.third.pose(IDENTITY if axes.sign > 0.0 else Z_ROUND)
-
-
-class Grid:
-    """The plane of two axes: lines along each in its colour."""
-
-    def __init__(self, stage: Stage, name: str, first: int, second: int, size: float = 1.0, cell: float = 0.25) -> None:
-        offsets = np.arange(-size, size + 0.5 * cell, cell)
-        pieces = np.zeros((2, len(offsets), 2, 3))
-        for half, (along, across) in zip(pieces, ((first, second), (second, first)), strict=True):
-            half[:, 0, along], half[:, 1, along] = -size, size
-            half[:, :, across] = offsets[:, None]
-        roles = [AXES[first]] * len(offsets) + [AXES[second]] * len(offsets)
-        self.node = stage.strokes(name, roles, width=1.0)
-        self.node.draw(pieces.reshape(-1, 2, 3).tolist())
-
-
-class Hand:
-    """A right or a left hand with its thumb along Z, and the arc that its fingers sweep, from X to Y."""
-
-    def __init__(self, stage: Stage, name: str) -> None:
-        self.node = stage.group(name)
-        self.hands = {side: _Fingers(stage, f"{name}/{side}", left=side == "left") for side in ("right", "left")}
-        self.arc = stage.lines(f"{name}/arc", "ink", width=3.5)
-        self.head = stage.mesh(f"{name}/head", meshes.arrow_head(), "ink")
-
-    def draw(self, axes: Axes, rule: float, shown: bool) -> None:
-        self.node.show(shown)
-        if not shown:
-            return
-        self.node.pose(axes.wxyz)
-        for side, fingers in self.hands.items():
-            fingers.node.show(side == axes.handedness)
-            fingers.node.pose(position=axes.hand)
-            fingers.bend(rule)
-        angle = rule * math.pi / 2
-        self.arc.arc(ARC_RADIUS, angle)
-        self.head.pose(_about_z(angle), (ARC_RADIUS * math.cos(angle), ARC_RADIUS * math.sin(angle), 0.0))
-
-
-class _Fingers:
-    """One hand; its fingers bend at three joints."""
-
-    def __init__(self, stage: Stage, name: str, *, left: bool) -> None:
-        self.node = stage.group(name)
-        parts = meshes.hand(left=left)
-        self.joints = []
-        stage.mesh(f"{name}/palm", parts["palm"], "ghost")
-        stage.mesh(f"{name}/thumb", parts["thumb"], "z")
-        path = name
-        for part, at in zip(("near", "middle", "far"), (0.04, *meshes.SEGMENTS), strict=True):
-            path = f"{path}/{part}"
-            joint = stage.mesh(path, parts[part], "ghost")
-            joint.pose(position=(at, 0.0, 0.0))
-            self.joints.append(joint)
-        side = "left" if left else "right"
-        stage.label(f"{name}/label", f"{side} hand", (-0.72, 0.0, 0.16 if left else -0.16))
-
-    def bend(self, rule: float) -> None:
-        for joint, most in zip(self.joints, meshes.CURL, strict=True):
-            joint.pose(_about_z(math.radians(most) * rule))
-
-
-def _about_z(angle: float) -> Quaternion:
-    return math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)

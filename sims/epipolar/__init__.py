@@ -6,13 +6,14 @@ the point is in one picture, it must be on that line in the other. F says so in 
 
 from __future__ import annotations
 
-from sims.epipolar import actions, plan
+from sims.epipolar import actions, calibration, candidate, plan, ray
 from sims.epipolar.panes import panes
-from sims.epipolar.params import ESTIMATE, EpipolarParams
+from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, OWN, EpipolarParams
 from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
-from sims.epipolar.scene import EpipolarScene, seen
+from sims.epipolar.scene import SIDE_BY_SIDE, EpipolarScene, seen, view_of
 from sims.epipolar.solution import EpipolarSolution, solve
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.kit.paste import Paste
+from sims.kit.sim import Action, Contract, Dial, Objective, Sim
 
 __all__ = ["CONTRACT", "SIM", "EpipolarParams", "EpipolarSolution", "solve"]
 
@@ -31,20 +32,37 @@ SIM = Sim(
     scene=EpipolarScene,
     caption=caption,
     readouts=readouts,
-    folds=(MATRICES, LINES, POINTS, ESTIMATE,),
+    folds=(MATRICES, LINES, POINTS, ESTIMATE, OWN),
     describe=describe,
-    view=View((4.2, -3.4, 3.9), (0.1, 1.9, 1.0), 2.7),
+    view=SIDE_BY_SIDE,
+    view_of=view_of,
     seen=seen,
     panes=panes,
-    actions=(
-        Action("rectified", "Rectified pair", "Side by side, same direction: level lines", actions.preset("rectified")),
-        Action("converging", "Converging pair", "Both look at the points: lines fan out", actions.preset("converging")),
-        Action("forward", "Forward motion", "One behind the other: epipoles in sight", actions.preset("forward")),
-        Action("vertical", "Vertical pair", "One above the other: upright lines", actions.preset("vertical")),
-        Action(
-            "new-sample", "Estimate F, new noise", "From 12 points, with the next noise", actions.new_sample, ESTIMATE
+    dials=(
+        Dial(
+            "depth", "Depth along left ray", "How far P is before the left camera; it slides along the ray of p",
+            ray.NEAREST, ray.FARTHEST, actions.depth, 0.05, "m",
         ),
-        Action("clear-pick", "Clear picked pixel", "Takes the pixel and its line away", actions.clear_pick),
+        Dial(
+            "off_line", "q′ off the line", "How far the free pixel q′ is from the line of p",
+            -candidate.FARTHEST, candidate.FARTHEST, actions.off_line, 1.0, "px",
+        ),
+    ),
+    actions=(
+        Action("sweep", "Slide P along its ray", "p stays; p′ runs along its line", ray.sweep),
+        Action("free", "Free p′", "A pixel q′ that leaves the line: which point in space gives it?", candidate.free),
+        Action("rectified", "Rectified pair", "Side by side, same direction: level lines", actions.preset("rectified")),
+        Action("clear-pick", "Clear marks", "Takes picked pixel, q′ and trail away", actions.clear),
+        Action("sight", "Camera in sight", "The right camera sees the left one", actions.preset("sight"), CAMERAS),
+        Action(
+            "converging", "Converging pair", "Both look at the points: lines fan out", actions.preset("converging"),
+            CAMERAS,
+        ),
+        Action(
+            "forward", "Forward motion", "One behind the other: epipoles in sight", actions.preset("forward"), CAMERAS
+        ),
+        Action("vertical", "Vertical pair", "One above the other: upright lines", actions.preset("vertical"), CAMERAS),
+        Action("new-sample", ESTIMATE_ACTION, "From 12 points, with the next noise", actions.new_sample, ESTIMATE),
     ),
     handles={
         "/point": actions.hold("point"),
@@ -54,21 +72,38 @@ SIM = Sim(
         "right_pixel": actions.hold_pixel("right"),
         "pick_left": actions.hold_pick("left"),
         "pick_right": actions.hold_pick("right"),
+        "depth": ray.hold,
+        "candidate": candidate.hold,
+        "off_line": candidate.hold_off,
         "plan_left": plan.hold("left"),
         "plan_right": plan.hold("right"),
         "plan_point": plan.hold("point"),
     },
+    paste=Paste(
+        OWN, "Calibration of two cameras", "K1, K2, R and T as OpenCV, Kalibr’s camchain, or both ROS files have them",
+        calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".txt"),
+    ),
     states={
+        "own pair": {"own": tuple(calibration.read(calibration.EXAMPLE)), "own_left": (300.0, 200.0)},
         "converging": {**actions.PRESETS["converging"], "show_all_lines": True, "points": 12},
         "forward": {**actions.PRESETS["forward"], "show_all_lines": True},
         "vertical": {**actions.PRESETS["vertical"], "show_all_lines": True},
         "picked": {"pick": "left:200,300"},
+        "slid": {**actions.PRESETS["sight"], "trail": (1.5, 9.0)},
+        "slid behind the right camera": {**actions.PRESETS["forward"], "trail": (0.5, 9.0)},
+        "free": {"candidate": (275.0, 260.0)},
+        "free on the line": {**actions.PRESETS["sight"], "candidate": (423.4, 224.0)},
+        "free and parallel": {"candidate": (455.0, 210.0)},
+        "free and behind": {"candidate": (500.0, 210.0)},
         "picked at the epipole": {**actions.PRESETS["forward"], "pick": "right:320,240"},
         "noise": {"points": 12, "noise": 1.0, "seed": 3},
         "eight exact points": {"points": 8},
         "zero baseline": {"left": (0.0, 0.0, 1.0), "right": (0.0, 0.0, 1.0), "pick": "left:200,300", "points": 12},
         "pure rotation": {
             "left": (0.0, 0.0, 1.0), "right": (0.0, 0.0, 1.0), "left_pan": 8, "right_pan": -8, "points": 12,
+        },
+        "free without a baseline": {
+            "left": (0.0, 0.0, 1.0), "right": (0.0, 0.0, 1.0), "candidate": (9.0, 9.0), "trail": (1.0, 2.0),
         },
         "tiny baseline": {"left": (0.0, 0.0, 1.0), "right": (1e-6, 0.0, 1.0), "points": 12},
         "point on the baseline": {**actions.PRESETS["forward"], "point": (0.0, 4.0, 1.0)},
@@ -81,10 +116,13 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="left right left_pan right_pan focal point points show_plane show_all_lines pick",
+    parameters=(
+        "left right left_pan right_pan focal point points show_plane show_all_lines pick trail candidate own own_left"
+        " own_right"
+    ),
     solution=(
         "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"
-        " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson"
+        " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson trail candidate own"
     ),
     link=(
         "left=-0.5,0,1.2&right=0.5,0.1,1&left_pan=-10&right_pan=12.5&focal=700&point=0.2,3.5,1.1"

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from sims.epipolar.params import LAST, LAST_SEED, LEFT, POINT, RIGHT, EpipolarParams, Side
+from sims.epipolar import ray
+from sims.epipolar.params import ENOUGH, LAST, LAST_SEED, LEFT, POINT, RIGHT, SIGHT, EpipolarParams, Side
 from sims.epipolar.rig import camera
+from sims.epipolar.solution import EpipolarSolution
 from sims.kit.sim import Step
 from sims.kit.spelling import plain
 
 PRESETS: dict[str, dict[str, Any]] = {
     "rectified": {"left": LEFT, "right": RIGHT, "left_pan": 0.0, "right_pan": 0.0},
+    "sight": {**SIGHT},
     "converging": {"left": (-1.2, 0.4, 1.0), "right": (1.2, 0.4, 1.0), "left_pan": -18.0, "right_pan": 18.0},
     "forward": {"left": (0.0, -0.6, 1.0), "right": (0.0, 0.9, 1.0), "left_pan": 0.0, "right_pan": 0.0},
     "vertical": {"left": (0.0, 0.0, 0.65), "right": (0.0, 0.0, 1.45), "left_pan": 0.0, "right_pan": 0.0},
@@ -24,7 +27,7 @@ def preset(name: str) -> Any:
     """An action: both cameras glide to their places, and what is seen of the point is as at the start."""
 
     def run(p: EpipolarParams) -> Iterator[Step]:
-        yield Step({**PRESETS[name], "focal": 600.0, "point": POINT}, GLIDE)
+        yield Step({**PRESETS[name], "focal": 600.0, "point": POINT, "trail": None, "candidate": None}, GLIDE)
 
     return run
 
@@ -33,12 +36,22 @@ def new_sample(p: EpipolarParams) -> dict[str, Any]:
     """Noise of the next seed, on as many points as an estimate needs and some more."""
     if p.noise > 0.0 and p.points >= 8:
         return {"seed": (p.seed + 1) % (LAST_SEED + 1)}
-    return {"noise": p.noise or 1.0, "points": max(p.points, 12)}
+    return {"noise": p.noise or 1.0, "points": max(p.points, ENOUGH)}
 
 
-def clear_pick(p: EpipolarParams) -> dict[str, Any]:
-    """No pixel is picked."""
-    return {"pick": None}
+def clear(p: EpipolarParams) -> dict[str, Any]:
+    """No pixel is picked or free, and no trail is shown."""
+    return {"pick": None, "candidate": None, "trail": None}
+
+
+def depth(p: EpipolarParams, s: EpipolarSolution) -> float | None:
+    """What the dial of the depth shows, where there is a ray to slide along."""
+    return s.depth_left if s.depth_left >= ray.LEAST else None
+
+
+def off_line(p: EpipolarParams, s: EpipolarSolution) -> float | None:
+    """What the dial of q′ shows: how far it is from the line, if both are there."""
+    return None if s.candidate is None else s.candidate.distance
 
 
 def hold(name: str) -> Any:

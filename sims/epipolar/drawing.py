@@ -21,7 +21,9 @@ ROOM, LEAST = 1.1, 0.3
 REACH = 4.0
 """Metres beyond which an epipole isn't drawn on the plane of its picture."""
 BESIDE, BEYOND = 0.35, 1.1
-"""How far the plane goes beyond the centres, as part of the baseline, and beyond the point, of its distance."""
+"""How far the plane goes beyond what it holds, along the baseline as part of it, and beyond the point."""
+NARROWEST = 1.5
+"""Metres that the plane is wide at least: of a point near the baseline it would be a thin strip."""
 Segment = tuple[Place, Place]
 Segments = tuple[Segment, ...]
 
@@ -143,10 +145,17 @@ def _stretch(piece: Segment, end: Place, focal: float, near: float) -> Segment |
 
 
 def plane(left: Place, right: Place, point: Place) -> Array:
-    """A piece of the epipolar plane: a parallelogram with the baseline and the point in it."""
+    """A piece of the epipolar plane: a parallelogram with the baseline and the point in it, which leans at most 45°."""
     a, b, x = np.array((left, right, point))
-    along = b - a
-    beyond = x + (BEYOND - 1.0) * (x - 0.5 * (a + b))
-    aside = (0.5 + BESIDE) * along
-    middle = 0.5 * (a + b)
-    return np.array([middle - aside, middle + aside, beyond + aside, beyond - aside])
+    baseline = math.dist(left, right)
+    along = (b - a) / baseline
+    foot = float(along @ (x - a))
+    across = x - a - foot * along
+    away = math.hypot(*across.tolist())
+    lean = min(max(foot - 0.5 * baseline, -away), away)
+    side = (across + lean * along) / away
+    spare = max(0.5 * (NARROWEST - away), 0.0)
+    first, last = (end(mid, foot - lean) for end, mid in ((min, 0.0), (max, baseline)))
+    first, last = first - BESIDE * baseline, last + BESIDE * baseline
+    near, far = a - spare * side, a + (BEYOND * away + spare) * side
+    return np.array([near + first * along, near + last * along, far + last * along, far + first * along])

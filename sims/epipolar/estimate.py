@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
@@ -13,8 +14,9 @@ from geometry.arrays import Array
 from geometry.eight_point import FEWEST, eight_point
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, normalize, sampson_distance
 from geometry.triangulation import pixel_noise
-from sims.epipolar.params import OTHERS, EpipolarParams
+from sims.epipolar.params import ENOUGH, ESTIMATE_ACTION, OTHERS, EpipolarParams
 from sims.epipolar.rig import Pair, Views, existing_line
+from sims.kit.readout import Formula, Note, Readout, Table, figure, mathml, quantity, significant, spelled, symbol
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,3 +77,28 @@ def _rms(F: Array, left: Array, right: Array) -> float:
 def _difference(matrix: Array, other: Array) -> float:
     """How far two matrices are apart that are defined up to sign."""
     return min(float(np.linalg.norm(matrix - other)), float(np.linalg.norm(matrix + other)))
+
+
+def readouts(p: EpipolarParams, e: Estimate) -> Iterator[Readout]:
+    """Numbers of the estimate, or what it takes."""
+    if e.status == "few":
+        more = "" if p.points >= FEWEST else f" “{ESTIMATE_ACTION}” shows {ENOUGH}."
+        yield Note(f"To estimate F takes 8 points that both cameras see; here are {e.seen}.{more}")
+    elif e.status == "ambiguous":
+        yield Note("These pixels fit more than one F: no estimate.", "warn")
+    elif e.F is not None and e.conditioning is not None:
+        words = f"F estimated from {e.seen} points with {quantity(p.noise, 'px', 2)} of noise"
+        yield Formula(words, "<mover><mi>F</mi><mo>^</mo></mover>", significant(e.F), copy=spelled(e.F))
+        yield _errors(e)
+        if e.difference is not None:
+            yield Formula("Frobenius norm of the error of E that this means", symbol("Δ"), mathml(e.difference))
+        yield Formula("Conditioning of the equations, σ₈ : σ₁", symbol("κ"), mathml(e.conditioning, 4))
+
+
+def _errors(e: Estimate) -> Table:
+    rows = [("F", "noisy pixels", "exact pixels")]
+    if e.noisy_rms_true is not None:
+        rows.append(("true", figure(e.noisy_rms_true, 3), figure(0.0, 3)))
+    if e.noisy_rms is not None and e.exact_rms is not None:
+        rows.append(("estimated", figure(e.noisy_rms, 3), figure(e.exact_rms, 3)))
+    return Table("Sampson distance in pixels, root mean square", rows)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import field_validator
@@ -11,6 +12,7 @@ from geometry.arrays import Array
 from sims.kit.fields import NumberBox, Slider, Switch, Text, Vector
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params
+from sims.kit.world import PLACES, TITLES
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
@@ -22,21 +24,30 @@ LAST_SEED = 9999
 LEFT: Place = (-0.6, 0.0, 1.0)
 RIGHT: Place = (0.6, 0.0, 1.0)
 POINT: Place = (0.3, 4.0, 1.2)
-OTHERS: Array = np.array(
-    [
-        (-0.7, 3.6, 0.7), (0.8, 4.6, 1.5), (-0.3, 5.0, 1.7), (0.6, 3.4, 0.6), (-0.9, 4.8, 1.2), (1.0, 5.6, 0.9),
-        (-0.1, 4.2, 0.5), (-0.6, 3.9, 1.6), (0.0, 5.8, 1.5), (-0.5, 5.6, 0.3), (0.9, 3.8, 0.9),
-    ]
+WORLD: Place = (0.3, 5.0, 0.0)
+"""Metres that the little world is moved to stand before the cameras."""
+CORNERS = (
+    "roof-near", "cube-left", "near-post", "eave-far-right", "near-foot", "eave-near-right", "wall-near-left",
+    "far-post", "eave-near-left", "wall-near-right", "roof-far",
 )  # fmt: skip
+OTHERS: Array = np.array([PLACES[name] for name in CORNERS]) + WORLD
 """The points after the first, in the world: in sight of both cameras in each preset, and not on one plane."""
 
 
-CAMERAS, ESTIMATE = "The cameras", "F estimated from noisy points"
+CAMERAS, ESTIMATE, OWN = "The cameras", "F estimated from noisy points", "Your own stereo pair"
 """Titles of folds."""
+ESTIMATE_ACTION, ENOUGH = "Estimate F, new noise", 12
+"""The button that estimates F, and how many points it shows: as many as that takes, and some more."""
+
+
+SIGHT: Mapping[str, Any] = {"left": (-0.4, 0.9, 0.9), "right": (0.5, -0.8, 1.2), "left_pan": -8.0, "right_pan": 8.0}
+"""The right camera sees the left one: an epipole is in its picture."""
 
 
 class EpipolarParams(Params):
     """State of the sim."""
+
+    opening: ClassVar[Mapping[str, Any]] = SIGHT
 
     left: Annotated[
         Place, Vector((-3.0, -3.0, 0.0), (3.0, 3.0, 3.0), step=0.01, unit="m", title="Left camera", group=CAMERAS)
@@ -70,6 +81,21 @@ class EpipolarParams(Params):
     """Standard deviation of Gaussian noise on the pixels that F is estimated from; 0 is off"""
     seed: Annotated[int, NumberBox(0, LAST_SEED, step=1, title="Sample", group=ESTIMATE)] = 0
     """Seed of the noise: the same seed, the same noise"""
+    trail: Annotated[tuple[float, float] | None, Vector(0.01, 30.0, step=0.1, unit="m", title="Trail", hidden=True)] = (
+        None
+    )
+    """Depths between which P has slid along the left ray: that piece of it is marked"""
+    candidate: Annotated[Pixel | None, Vector((0.0, 0.0), LAST, step=1, unit="px", title="Free p′", hidden=True)] = None
+    """A pixel of the right picture, q′, that is tried as the partner of p"""
+    own: Annotated[
+        tuple[float, float, float, float, float, float, float, float, float, float, float, float, float, float] | None,
+        Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True),
+    ] = None
+    """Both calibrations: fx, fy, cx, cy of the left and the right camera, the rotation vector in degrees, and T"""
+    own_left: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your left pixel", group=OWN)] = (0.0, 0.0)
+    """A pixel of your left picture, free of distortion: u, v"""
+    own_right: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your right pixel", group=OWN)] = (0.0, 0.0)
+    """The pixel of your right picture that may be its partner: u, v"""
     pick: Annotated[
         str | None,
         Text(
@@ -93,7 +119,7 @@ class EpipolarParams(Params):
 
 def title(number: int) -> str:
     """What a point is called."""
-    return "P, the 3D point" if number == 1 else f"Point {number}"
+    return "P, the 3D point" if number == 1 else f"Point {number}: {TITLES[CORNERS[number - 2]]}"
 
 
 def read_pick(pick: str) -> tuple[Side, Pixel]:

@@ -14,9 +14,9 @@ from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 
 WIDTH, HEIGHT = 640, 340
-SCALE = 46.0
+SCALE = 33.0
 """Pixels a metre."""
-ORIGIN: Pixel = (320.0, 282.0)
+ORIGIN: Pixel = (320.0, 290.0)
 
 
 def at(x: float, y: float) -> Pixel:
@@ -52,9 +52,9 @@ def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
 @lru_cache(maxsize=1)
 def _grid() -> Picture:
     picture = Picture("plan", "From above", WIDTH, HEIGHT)
-    for k in range(-6, 7):
-        picture.line(at(k, -9), at(k, 9), "ghost", width=0.3)
-        picture.line(at(-9, k), at(9, k), "ghost", width=0.3)
+    for k in range(-10, 11):
+        picture.line(at(k, -10), at(k, 10), "ghost", width=0.3)
+        picture.line(at(-10, k), at(10, k), "ghost", width=0.3)
     return picture
 
 
@@ -64,7 +64,8 @@ def _others(count: int, selected: int) -> Picture:
     picture = _grid().copy()
     for k, (x, y, _) in enumerate(OTHERS[:count].tolist(), start=2):
         chosen = k == selected
-        picture.point(f"{k}", at(x, y), title(k), chosen=chosen, label=f"{k}" if chosen else "")
+        if picture.shows(at(x, y)):
+            picture.point(f"{k}", at(x, y), title(k), chosen=chosen, label=f"{k}" if chosen else "")
     return picture
 
 

@@ -5,17 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 
+from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import in_picture
-from sims.epipolar.estimate import Estimate
-from sims.epipolar.params import ESTIMATE, OTHERS, EpipolarParams, Pixel
+from sims.epipolar.estimate import readouts as estimate_readouts
+from sims.epipolar.own import readouts as own_readouts
+from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.kit.readout import (
+    Fold,
+    Formula,
+    Note,
+    Readout,
+    Table,
+    figure,
+    mathml,
+    quantity,
+    row,
+    significant,
+    spelled,
+    symbol,
+)
 
-MATRICES, LINES, POINTS = "F and E", "Lines and epipoles", "All points"
+MATRICES, LINES, POINTS = "F and E", "Pixels, lines and epipoles", "All points"
 RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"
 RIGHT_LINE = "<msup><mi>l</mi><mo>′</mo></msup>"
 RIGHT_EPIPOLE = "<msup><mi>e</mi><mo>′</mo></msup>"
 TRANSPOSED = "<msup>{}<mi>T</mi></msup>"
+CANDIDATE = "<msup><mi>q</mi><mo>′</mo></msup>"
 NUMBERS = tuple(f"{k}" for k in range(1, len(OTHERS) + 2))
 THOUSANDTHS = "×10⁻³"
 FARTHEST = 1e6
@@ -41,33 +57,73 @@ def caption(p: EpipolarParams, s: EpipolarSolution) -> str:
     """What to do, or what to see."""
     if s.F is None:
         return "Both cameras are at one place: pull them apart, and there is an epipolar plane again."
+    if s.candidate is not None:
+        return judged(s.candidate)
     if s.picked is not None:
         return f"The pixel that you picked in the {s.picked.side} picture lies on a ray, which is a line in the other."
     if s.epipole_left_pixel is not None and in_picture(*s.epipole_left_pixel):
         return "All lines run through the epipole: there each camera would see the other one."
-    return "Drag P, or click a pixel of one picture: its partner can only lie on one line of the other."
+    if s.trail is not None:
+        return "P slid along one ray: p stayed where it is, and p′ ran along its line."
+    if s.epipole_left_pixel is None and s.epipole_right_pixel is None:
+        return "Both epipoles are at infinity, so all lines are parallel: slide P, and p′ runs along one of them."
+    return "Slide P along the left ray: p stays where it is, and p′ runs along one line."
+
+
+def judged(c: Candidate) -> str:
+    """Whether q′ can be the partner of p, in one sentence."""
+    match c.verdict:
+        case "off the line":
+            away = quantity(abs(c.distance or 0.0), "px", 1)
+            return f"No point in space gives this pair: q′ is {away} off the line of p."
+        case "a point":
+            return "On the line of p: the two rays meet, so one point in space gives the pair of p and q′."
+        case "at infinity":
+            return "On the line of p, but the two rays are parallel: they meet at infinity."
+        case "behind a camera":
+            return "On the line of p, but the two rays part: they would meet behind a camera."
+    return "p has no line in the right picture, so nothing can be said of q′."
 
 
 def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(s)
-    for side, name, pixel in (("left", symbol("p"), s.pixel_left), ("right", RIGHT_PIXEL, s.pixel_right)):
-        if pixel is not None:
-            yield Formula(f"Pixel of P in the {side} picture", name, row(pixel, 2), "px")
-    if s.residual is not None:
-        constraint = f"{TRANSPOSED.format(RIGHT_PIXEL)}{symbol('F')}{symbol('p')}"
-        yield Formula("Epipolar constraint", constraint, mathml(s.residual))
-    if s.sampson is not None:
-        yield Formula("Sampson distance of p and p′", symbol("d"), mathml(s.sampson), "px")
+    yield from _constraint(s)
     yield Fold(MATRICES)
     yield from _matrices(s)
     yield Fold(LINES)
+    yield from _pixels(s)
     yield from _lines(p, s)
     yield from _epipoles(s)
     yield Fold(POINTS)
     yield _points(p, s)
     yield Fold(ESTIMATE)
-    yield from _estimate(p, s)
+    yield from estimate_readouts(p, s.estimate)
+    yield Fold(OWN)
+    yield from own_readouts(s.own)
+
+
+def _constraint(s: EpipolarSolution) -> Iterator[Formula]:
+    """How q′, or where there is none p′, keeps the constraint."""
+    c = s.candidate
+    name, letter = (RIGHT_PIXEL, "p′") if c is None else (CANDIDATE, "q′")
+    residual = s.residual if c is None else c.residual
+    distance = None if residual is None else 0.0 if c is None else c.distance
+    if residual is not None:
+        constraint = f"{TRANSPOSED.format(name)}{symbol('F')}{symbol('p')}"
+        yield Formula("Epipolar constraint", constraint, mathml(residual))
+    if distance is not None:
+        yield Formula(f"{letter} off the line of p", symbol("d"), mathml(abs(distance), 1), "px")
+    if c is not None and c.gap is not None:
+        yield Formula("Gap between the two rays", symbol("g"), mathml(c.gap), "m")
+
+
+def _pixels(s: EpipolarSolution) -> Iterator[Formula]:
+    for side, name, pixel in (("left", symbol("p"), s.pixel_left), ("right", RIGHT_PIXEL, s.pixel_right)):
+        if pixel is not None:
+            yield Formula(f"Pixel of P in the {side} picture", name, row(pixel, 2), "px")
+    if s.sampson is not None:
+        yield Formula("Sampson distance of p and p′", symbol("d", "S"), mathml(s.sampson), "px")
 
 
 def _points(p: EpipolarParams, s: EpipolarSolution) -> Table:
@@ -105,11 +161,11 @@ def _status(s: EpipolarSolution) -> Iterator[Note]:
 def _matrices(s: EpipolarSolution) -> Iterator[Readout]:
     if s.F is None or s.E is None or s.singular_values is None:
         return
-    yield Formula("Fundamental matrix, of norm 1", symbol("F"), mathml(1e3 * s.F), THOUSANDTHS)
+    yield Formula("Fundamental matrix, of norm 1", symbol("F"), significant(s.F), copy=spelled(s.F))
     yield Formula(
         f"Singular values of F: rank {s.rank}", symbol("σ"), row((1e3 * s.singular_values).tolist()), THOUSANDTHS
     )
-    yield Formula("Essential matrix, of norm 1", symbol("E"), mathml(s.E))
+    yield Formula("Essential matrix, of norm 1", symbol("E"), mathml(s.E), copy=spelled(s.E))
 
 
 def _lines(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
@@ -149,30 +205,6 @@ def far_away(pixel: Pixel) -> bool:
     return max(map(abs, pixel)) > FARTHEST
 
 
-def _estimate(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
-    e = s.estimate
-    if e.status == "few":
-        yield Note(f"To estimate F takes 8 points that both cameras see; here are {e.seen}.")
-    elif e.status == "ambiguous":
-        yield Note("These pixels fit more than one F: no estimate.", "warn")
-    elif e.F is not None and e.conditioning is not None:
-        words = f"F estimated from {e.seen} points with {quantity(p.noise, 'px', 2)} of noise"
-        yield Formula(words, "<mover><mi>F</mi><mo>^</mo></mover>", mathml(1e3 * e.F), THOUSANDTHS)
-        yield _errors(e)
-        if e.difference is not None:
-            yield Formula("Frobenius norm of the error of E that this means", symbol("Δ"), mathml(e.difference))
-        yield Formula("Conditioning of the equations, σ₈ : σ₁", symbol("κ"), mathml(e.conditioning, 4))
-
-
-def _errors(e: Estimate) -> Table:
-    rows = [("F", "noisy pixels", "exact pixels")]
-    if e.noisy_rms_true is not None:
-        rows.append(("true", figure(e.noisy_rms_true, 3), figure(0.0, 3)))
-    if e.noisy_rms is not None and e.exact_rms is not None:
-        rows.append(("estimated", figure(e.noisy_rms, 3), figure(e.exact_rms, 3)))
-    return Table("Sampson distance in pixels, root mean square", rows)
-
-
 def describe(p: EpipolarParams, s: EpipolarSolution) -> str:
     """One sentence."""
     place = ", ".join(figure(v, 2) for v in p.point)
@@ -190,6 +222,8 @@ def describe(p: EpipolarParams, s: EpipolarSolution) -> str:
         f"{side} epipole {epipole_in_words(pixel)}"
         for side, pixel in (("left", s.epipole_left_pixel), ("right", s.epipole_right_pixel))
     ]
+    if s.candidate is not None:
+        parts.append(judged(s.candidate).rstrip("."))
     shown = "1 point" if p.points == 1 else f"{p.points} points"
     return "; ".join([*parts, f"baseline {quantity(s.baseline, 'm', 2)}", shown]) + "."
 

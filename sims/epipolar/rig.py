@@ -14,7 +14,7 @@ from geometry.camera import R_WORLD_LEVEL, Camera
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipole_pixel, epipoles, essential, normalize
 from geometry.rotations import axis_rotation
 from sims.epipolar.drawing import Segments, chords, distance, drawn_size, spots
-from sims.epipolar.params import CENTER, OTHERS, Pixel, Place
+from sims.epipolar.params import CENTER, OTHERS, EpipolarParams, Pixel, Place
 from sims.kit.types import Quaternion
 
 RANK_TOLERANCE = 1e-12
@@ -70,7 +70,11 @@ def _orientation(pan: float) -> Quaternion:
 def pair(left: Place, right: Place, left_pan: float, right_pan: float, focal: float) -> Pair:
     """Both cameras, and their epipolar geometry if they have any."""
     first, second = camera(left, left_pan, focal), camera(right, right_pan, focal)
-    turned = _orientation(left_pan), _orientation(right_pan)
+    return related(first, second, (_orientation(left_pan), _orientation(right_pan)))
+
+
+def related(first: Camera, second: Camera, turned: tuple[Quaternion, Quaternion]) -> Pair:
+    """Two cameras with their orientations, and their epipolar geometry if they have any."""
     try:
         E = normalize(essential(first, second))
     except GeometryError:  # both at one place
@@ -106,6 +110,13 @@ def other_drawings(
         (spots(pixels, focal, near), chords(all_lines, focal, near) if lines and all_lines is not None else ())
         for pixels, all_lines in sides
     )
+
+
+def right_line(p: EpipolarParams) -> Array | None:
+    """The line of p in the right picture; None where there is none."""
+    both = pair(p.left, p.right, p.left_pan, p.right_pan, p.focal)
+    left, _ = both.left.project(p.point)
+    return None if both.F is None else existing_line(epipolar_line_right(both.F, left))
 
 
 def existing(pixel: Array) -> Pixel | None:

@@ -6,32 +6,45 @@ from typing import Literal
 
 import numpy as np
 
-from geometry.arrays import Array
+from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import CameraDrawing, Segment
-from sims.epipolar.params import OTHERS, EpipolarParams, Place, Side
+from sims.epipolar.params import OTHERS, WORLD, EpipolarParams, Place, Side
+from sims.epipolar.ray import Trail
 from sims.epipolar.readouts import short_trouble
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import quantity
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
+from sims.kit.sim import View
 from sims.kit.types import ORIGIN
+from sims.kit.world_drawing import draw_in_scene
 
 SPOT = 0.045
-DROPS: Array = np.stack([OTHERS, OTHERS * (1.0, 1.0, 0.0)], axis=1)
-"""From the other points to the ground."""
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
 def seen(p: EpipolarParams, s: EpipolarSolution) -> list[Place]:
-    """What must be in sight."""
-    return [p.left, p.right, p.point]
+    """What must be in sight; not P while it slides along its ray, or the view would step back and forth."""
+    return [p.left, p.right] if s.trail is not None else [p.left, p.right, p.point]
+
+
+SIDE_BY_SIDE = View((4.2, -3.4, 3.9), (0.0, 2.6, 0.9), 3.2)
+BEHIND_EACH_OTHER = View((-4.5, -3.2, 4.4), (0.0, 2.5, 0.8), 3.5)
+"""From the other side: from that of the first the epipolar plane is seen edge-on."""
+
+
+def view_of(p: EpipolarParams) -> View:
+    """From where both pictures and the epipolar plane are seen, as the cameras stand."""
+    across, along, up = (abs(a - b) for a, b in zip(p.left, p.right, strict=True))
+    return BEHIND_EACH_OTHER if along > max(across, up) else SIDE_BY_SIDE
 
 
 class EpipolarScene:
     """World coordinates, but for what lies on a camera's picture."""
 
     def __init__(self, stage: Stage) -> None:
-        stage.ground(size=16.0, cell=0.5)
+        stage.ground(size=24.0, cell=0.5)
+        draw_in_scene(stage, WORLD)
         self.cameras = CameraInScene(stage, "left", "L", "e"), CameraInScene(stage, "right", "R", "e′")
         self.baseline = stage.lines("/baseline", "ink", width=2.5)
         self.middle = stage.group("/middle")
@@ -39,11 +52,13 @@ class EpipolarScene:
         self.plane = stage.sheet("/plane", "held", opacity=0.16)
         self.rays = stage.strokes("/rays", ("left", "right"), width=1.8)
         stage.linked("point", self.rays)
+        stage.linked("depth", self.rays)
+        self.trail = TrailInScene(stage)
+        self.candidate = CandidateInScene(stage)
         self.others = [stage.ball(f"/points/{k}", SPOT, "ink") for k in range(2, len(OTHERS) + 2)]
         for k, (ball, place) in enumerate(zip(self.others, OTHERS.tolist(), strict=True), start=2):
             ball.pose(position=place)
             stage.link(ball, f"{k}")
-        self.drops = stage.lines("/drops", "ghost", width=1.0)
         self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
         self.held = stage.grip("/point", 0.06, halo=2.4)
         stage.link(self.held, "1")
@@ -65,6 +80,8 @@ class EpipolarScene:
         self._points(p)
         self._linked(p, s)
         self.rays.draw(((p.left, p.point), (p.right, p.point)))
+        self.trail.draw(s.trail)
+        self.candidate.draw(s.candidate)
         self.plane.vertices(s.drawn.plane if p.show_plane else None)
         self.pick_ray.stroke(s.drawn.picked_ray)
         trouble = short_trouble(s)
@@ -81,7 +98,6 @@ class EpipolarScene:
     def _points(self, p: EpipolarParams) -> None:
         self.held.pose(position=p.point)
         self.drop.stroke((ORIGIN, (0.0, 0.0, -p.point[2])))
-        self.drops.pieces(DROPS[: p.points - 1])
         for k, ball in enumerate(self.others, start=2):
             ball.show(k <= p.points)
 
@@ -94,6 +110,38 @@ class EpipolarScene:
     def highlight(self, name: str) -> None:
         """Highlight the point that somebody hovers over in a picture or the table, or none."""
         self.highlighted.draw(self.places.get(name), self.centers)
+
+
+class TrailInScene:
+    """The piece of the left ray along which P has slid, with a dot for each metre of depth."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.line = stage.lines("/trail", "held", width=5.0)
+        self.steps = stage.cloud("/trail_steps", "held", size=0.055)
+
+    def draw(self, trail: Trail | None) -> None:
+        self.line.stroke(None if trail is None else trail.ends)
+        self.steps.show(trail is not None and len(trail.steps) > 0)
+        if trail is not None:
+            self.steps.points(trail.steps)
+
+
+class CandidateInScene:
+    """The ray of the free pixel, and the gap between it and the left ray."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.ray = stage.lines("/candidate/ray", "held", width=2.5)
+        self.gap = stage.lines("/candidate/gap", "held", width=5.0)
+        self.place = stage.group("/candidate/place")
+        self.words = stage.label("/candidate/place/label", "", (0.0, 0.0, -0.3))
+        stage.linked("off_line", self.ray, self.gap)
+
+    def draw(self, c: Candidate | None) -> None:
+        self.ray.stroke(None if c is None else c.ray)
+        self.gap.stroke(None if c is None else c.nearest)
+        self.place.place(None if c is None or c.nearest is None else c.nearest[1])
+        if c is not None and c.gap is not None:
+            self.words.text(f"gap {quantity(c.gap, 'm', 2)}")
 
 
 class Mark:

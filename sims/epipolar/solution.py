@@ -9,9 +9,12 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipolar_residual, sampson_distance
+from sims.epipolar.candidate import Candidate, candidate
 from sims.epipolar.drawing import Drawing, Segment, camera_drawing, drawn_size, plane
 from sims.epipolar.estimate import Estimate, estimate
+from sims.epipolar.own import OwnPair, own
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
+from sims.epipolar.ray import Trail, trail
 from sims.epipolar.rig import Pair, Views, existing, existing_line, other_drawings, pair, views
 
 EXACT = 1e-9
@@ -61,6 +64,9 @@ class EpipolarSolution:
     depth_right: float
     on_baseline: bool
     picked: Picked | None
+    own: OwnPair | None
+    trail: Trail | None
+    candidate: Candidate | None
     estimate: Estimate
     drawn: Drawing
 
@@ -106,6 +112,9 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
         depth_right=float(depth_right),
         on_baseline=aligned,
         picked=picked,
+        own=own(p),
+        trail=trail(p, both, float(depth_left)),
+        candidate=candidate(p, both, left, lines[1]),
         estimate=estimate(p, both, together),
         drawn=_drawn(p, both, (pixel_left, pixel_right), lines, picked, aligned),
     )

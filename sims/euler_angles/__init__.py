@@ -6,11 +6,13 @@ aircraft has by then, extrinsic ones about the fixed axes of the world.
 
 from __future__ import annotations
 
-from sims.euler_angles.actions import animate
+from sims.euler_angles import recognise
+from sims.euler_angles.actions import HANDLES, animate, take
 from sims.euler_angles.params import EulerParams
 from sims.euler_angles.readouts import FACTORS, FORMS, caption, describe, readouts
 from sims.euler_angles.scene import EulerScene
 from sims.euler_angles.solution import EulerSolution, solve
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Objective, Sim, View
 
 __all__ = ["CONTRACT", "SIM", "EulerParams", "EulerSolution", "solve"]
@@ -36,6 +38,17 @@ SIM = Sim(
     folds=(FACTORS, FORMS),
     describe=describe,
     view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.9),
+    handles=HANDLES,
+    paste=Paste(
+        group="Paste a rotation",
+        title="A rotation, in any form",
+        about="A matrix, a quaternion, an axis with its angle, a rotation vector or Euler angles, as NumPy, SciPy, ROS,"
+        " Unity or CSS write them; where a text can mean several, you are asked which",
+        example='Rotation.from_euler("ZYX", [30, 20, 10], degrees=True)',
+        read=recognise.read,
+        changes=take,
+        says=lambda found: f"Read as {found['what']}. It is there in all forms under “{FORMS}”.",
+    ),
     actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),
     states={
         "zero": {"yaw": 0, "pitch": 0, "roll": 0},

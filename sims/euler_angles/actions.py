@@ -1,16 +1,93 @@
-"""What buttons and handles do to a state."""
+"""What buttons, handles and a pasted rotation do to a state."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.rotations import axis_angle_to_matrix
+from sims.euler_angles.names import PLACES
 from sims.euler_angles.params import EulerParams
+from sims.euler_angles.solution import arc_frames, solve, triple_of
 from sims.kit.sim import Step
+from sims.kit.types import Place
+
+Handle = Callable[[EulerParams, Place], Mapping[str, Any]]
+LEAST = 1e-6
+"""Metres within which a place doesn't say a direction."""
+ARCS = ("/held_first", "/held_second", "/held_third")
+BODY = {"/held_nose": 0, "/held_wing": 1}
+"""Columns of R that nose and left wing point along."""
 
 
 def animate(p: EulerParams) -> Iterator[Step]:
     """The three turns one after another."""
-    yield Step({"progress": 0.0}, 0.0)
-    for k in (1.0, 2.0, 3.0):
-        yield Step({"progress": k}, 1.1)
-        yield Step({"progress": k}, 0.35)
+    words = [turn_words(p, k) for k in range(3)]
+    yield Step({"progress": 0.0}, 0.0, words=words[0])
+    for k, said in enumerate(words, start=1):
+        yield Step({"progress": float(k)}, 1.2, words=said)
+        yield Step({"progress": float(k)}, 0.6, words=said)
+
+
+def turn_words(p: EulerParams, k: int) -> str:
+    """Which turn the k-th is, in a sentence."""
+    whose = "the aircraft’s own" if p.frame == "intrinsic" else "the world’s fixed"
+    return f"{PLACES[k]} turn: {p.turns[k].said}, about {whose} {p.turns[k].axis}."
+
+
+def arc(k: int) -> Handle:
+    """The end of the k-th arc was led to a place in the world: the turn goes as far, at most half round at once."""
+
+    def pull(p: EulerParams, place: Place) -> Mapping[str, Any]:
+        along, across, _ = arc_frames(p)[k].T @ place
+        if math.hypot(along, across) < LEAST:
+            return {}
+        name, now = p.names[k], p.angles[k]
+        angle = now + math.remainder(math.degrees(math.atan2(across, along)) - now, 360.0)
+        low, high = p.bounds(name)
+        return {name: math.remainder(angle, 360.0) if high - low == 360.0 else min(max(angle, low), high)}
+
+    return pull
+
+
+def body(column: int) -> Handle:
+    """Nose or wing was pulled towards a place in the world: the shortest turn brings it there."""
+
+    def point(p: EulerParams, place: Place) -> Mapping[str, Any]:
+        R, aim = solve(p).R, np.asarray(place)
+        length = math.sqrt(aim @ aim)
+        if length < LEAST:
+            return {}
+        return triple_of(p, _shortest(R[:, column], aim / length) @ R)
+
+    return point
+
+
+def _shortest(start: Array, end: Array) -> Array:
+    """The rotation by the smallest angle that takes one unit vector to another; none for opposite ones."""
+    axis = np.cross(start, end)
+    sine = math.sqrt(axis @ axis)
+    return np.eye(3) if sine < LEAST else axis_angle_to_matrix(axis / sine, math.atan2(sine, float(start @ end)))
+
+
+HANDLES: Mapping[str, Handle] = {
+    **{name: arc(k) for k, name in enumerate(ARCS)},
+    **{name: body(column) for name, column in BODY.items()},
+}
+
+
+def take(p: EulerParams, found: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A rotation that was recognised: in its own order, where it has one, with the angles that were given."""
+    whole = p.changed({"progress": 3.0})
+    if "order" not in found:
+        return {"progress": 3.0, **triple_of(whole, np.array(found["R"]))}
+    own = whole.moved({"order": found["order"], "frame": found["frame"]})
+    angles = dict(zip(own.names, found["angles"], strict=True))
+    within = all(own.bounds(name)[0] <= angle <= own.bounds(name)[1] for name, angle in angles.items())
+    if not within:
+        angles = triple_of(own, np.array(found["R"]))
+    return {"progress": 3.0, "order": own.order, "frame": own.frame, **angles}

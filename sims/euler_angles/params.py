@@ -5,21 +5,14 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from geometry import euler
+from sims.euler_angles import names
+from sims.euler_angles.names import TurnName
 from sims.kit.fields import Choice, Slider
 from sims.kit.params import Params
 
 Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz"]
 NEAR_LOCK = 15.0
 """Degrees from lock within which the sim warns."""
-TAIT_BRYAN = {"z": "yaw", "y": "pitch", "x": "roll"}
-TURNS = {
-    order: ("yaw", "pitch", "roll")
-    if order[0] == order[2]
-    else (TAIT_BRYAN[order[0]], TAIT_BRYAN[order[1]], TAIT_BRYAN[order[2]])
-    for order in euler.ORDERS
-}
-NAMES = {"yaw": "Yaw ψ", "pitch": "Pitch θ", "roll": "Roll φ"}
-PROPER = {"yaw": "First α", "pitch": "Second β", "roll": "Third γ"}
 
 
 class EulerParams(Params):
@@ -46,9 +39,15 @@ class EulerParams(Params):
         return self.order[0] == self.order[2]
 
     @property
+    def turns(self) -> tuple[TurnName, ...]:
+        """What the three turns are called, in the order in which they are made."""
+        return names.turns(self.order, self.frame)
+
+    @property
     def names(self) -> tuple[str, str, str]:
         """Parameter names of the three turns, in the order of the turns."""
-        return TURNS[self.order]
+        first, second, third = self.turns
+        return first.parameter, second.parameter, third.parameter
 
     @property
     def angles(self) -> tuple[float, float, float]:
@@ -56,17 +55,25 @@ class EulerParams(Params):
         a, b, c = (getattr(self, name) for name in self.names)
         return a, b, c
 
+    @property
+    def arranged(self) -> tuple[str, ...]:
+        return "order", "frame", *self.names, "progress"
+
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "pitch":
             return (0.0, 180.0) if self.proper else (-90.0, 90.0)
         return super().bounds(name)
 
     def label(self, name: str) -> str:
-        if name not in NAMES:
-            return super().label(name)
-        k = self.names.index(name)
-        primes = "" if self.frame == "extrinsic" else "′" * k
-        return f"{(PROPER if self.proper else NAMES)[name]} · {self.order[k].upper()}{primes}"
+        turn = self._turn(name)
+        return super().label(name) if turn is None else turn.label
+
+    def about(self, name: str) -> str:
+        turn = self._turn(name)
+        return super().about(name) if turn is None else turn.about
+
+    def _turn(self, name: str) -> TurnName | None:
+        return next((turn for turn in self.turns if turn.parameter == name), None)
 
     def regions(self) -> dict[str, list[tuple[float, float]]]:
         """Where the middle angle is near lock, for the slider's track."""

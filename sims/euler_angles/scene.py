@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
+import numpy as np
+
+from sims.euler_angles.actions import ARCS, BODY
 from sims.euler_angles.params import NEAR_LOCK, EulerParams
-from sims.euler_angles.solution import EulerSolution, Turn
+from sims.euler_angles.solution import RADII, EulerSolution, Turn
 from sims.kit.palette import DASHES
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
+from sims.kit.types import Place, Vector
+
+TIPS = (1.0, 0.98)
+"""Metres from the middle to the grips of nose and left wing."""
+GRIP = 0.05
+ANCHORS = dict(zip(RADII, ("top-center", "center-center", "center-left"), strict=True))
+"""The first label hangs lower, clear of the next one where the two arcs meet; the last stands beside its short arc."""
 
 
 class EulerScene:
@@ -30,6 +41,13 @@ class EulerScene:
         self.arcs: list[Any] = []
         self.order = ""
         self.names: tuple[str, ...] = ()
+        self.held = [stage.grip(name, GRIP, axis=partial(self._axis, k)) for k, name in enumerate(ARCS)]
+        self.body = [stage.grip(name, GRIP) for name in BODY]
+        self.axes = np.eye(3)
+
+    def _axis(self, k: int) -> Vector:
+        axis: Vector = self.axes[k]
+        return axis
 
     def draw(self, p: EulerParams, s: EulerSolution) -> None:
         if p.order != self.order:
@@ -38,6 +56,16 @@ class EulerScene:
             frame.pose(turn.wxyz)
             arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
         self.names = p.names
+        self._hold(s, p.progress >= 3.0)
+
+    def _hold(self, s: EulerSolution, whole: bool) -> None:
+        """Put the grips where arcs, nose and wing end, where all turns are made."""
+        self.axes = np.array([arc[:, 2] for arc in s.arcs])
+        tips = [tip * s.R[:, column] for tip, column in zip(TIPS, BODY.values(), strict=True)]
+        for grip, place in zip(
+            (*self.held, *self.body), (*s.ends.tolist(), *(tip.tolist() for tip in tips)), strict=True
+        ):
+            grip.place(place if whole else None)
 
     def highlight(self, name: str) -> None:
         """Make the turn of an angle stand out, with the axis that it is about."""
@@ -49,13 +77,16 @@ class EulerScene:
         for arc in self.arcs:
             arc.remove()
         self.arcs = [
-            Arc(self.stage, f"{before}/arc{k}", axis, 1.5 - 0.3 * k, p.locks if k == 1 else ())
+            Arc(self.stage, f"{before}/arc{k}", axis, RADII[k], p.locks if k == 1 else ())
             for k, (before, axis) in enumerate(zip(self.befores, p.order, strict=True))
         ]
 
 
 class Arc:
-    """The arc of one turn with its label, its axis while the turn is being made, and the region near lock."""
+    """The arc of one turn with its label, its axis while the turn is being made, and the two places where it locks.
+
+    Where it locks, the whole circle is shown.
+    """
 
     def __init__(self, stage: Stage, name: str, axis: str, radius: float, locks: tuple[float, ...]) -> None:
         self.node = stage.group(name)
@@ -65,14 +96,15 @@ class Arc:
         self.end = stage.lines(f"{name}/end", axis, [(0, 0, 0), (radius, 0, 0)], width=1.5)
         self.axis = stage.lines(f"{name}/axis", axis, [(0, 0, -1.7), (0, 0, 1.7)], width=5.0)
         self.axis.show(False)
-        # the outermost label hangs lower, clear of the next one where the two arcs meet
-        self.label = stage.label(f"{name}/label", "", anchor="top-center" if name == "/arc0" else "center-center")
-        self.warning = stage.label(f"{name}/warning", "⚠ lock") if locks else None
-        self.locks = locks
+        self.label = stage.label(f"{name}/label", "", anchor=ANCHORS[radius])
         self.current = False
-        for lock in locks:
+        self.locks = {lock: stage.label(f"{name}/words{lock:.0f}", "") for lock in locks}
+        if locks:
+            stage.lines(f"{name}/circle", "ghost", width=1.2).arc(radius, 2.0 * math.pi)
+        for lock, label in self.locks.items():
             region = stage.lines(f"{name}/lock{lock:.0f}", "warn", width=3.0, dash=(0.03, 0.03))
             region.arc(radius, math.radians(2 * NEAR_LOCK), math.radians(lock - NEAR_LOCK))
+            label.pose(position=_beside(radius, math.radians(lock)))
 
     def draw(self, turn: Turn, *, near_lock: bool) -> None:
         radians = math.radians(turn.applied)
@@ -84,18 +116,11 @@ class Arc:
             part.show(visible)
         self.current = turn.current
         self.axis.show(turn.current)
-        self.label.pose(
-            position=(
-                1.1 * self.radius * math.cos(radians / 2),
-                1.1 * self.radius * math.sin(radians / 2),
-                0.0,
-            )
-        )
+        self.label.pose(position=_beside(self.radius, radians / 2))
         self.label.text(f"{turn.name} {quantity(turn.applied, '°', 0)}")
-        if self.warning is not None:
-            lock = math.radians(min(self.locks, key=lambda v: abs(v - turn.applied)))
-            self.warning.show(near_lock)
-            self.warning.pose(position=(1.12 * self.radius * math.cos(lock), 1.12 * self.radius * math.sin(lock), 0.0))
+        for lock, words in self.locks.items():
+            near = near_lock and abs(lock - turn.applied) < NEAR_LOCK
+            words.text(f"{'⚠ ' * near}lock at {quantity(lock, '°', 0)}")
 
     def highlight(self, on: bool) -> None:
         self.axis.show(on or self.current)
@@ -104,3 +129,8 @@ class Arc:
 
     def remove(self) -> None:
         self.node.handle.remove()
+
+
+def _beside(radius: float, angle: float) -> Place:
+    """Where words about an angle (radians) of an arc stand, in its frame."""
+    return 1.1 * radius * math.cos(angle), 1.1 * radius * math.sin(angle), 0.0

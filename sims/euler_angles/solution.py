@@ -10,13 +10,16 @@ import numpy as np
 
 from geometry import euler, quaternion
 from geometry.arrays import Array
-from geometry.rotations import matrix_to_axis_angle
+from geometry.rotations import axis_rotation, matrix_to_axis_angle
 from sims.euler_angles.params import EulerParams
 from sims.kit.types import Quaternion
 
-SHORT = {"yaw": "α", "pitch": "β", "roll": "γ"}
 # In which direction each turn is seen: the nose for turns about z and y, the left wing for turns about x.
 SEEN = {"z": "x", "y": "x", "x": "y"}
+RADII = (1.62, 1.38, 1.5)
+"""Metres of the three turns' arcs: the innermost is outside the wings."""
+SAME = 0.005
+"""Degrees within which two angles are one."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,21 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Left:
+    """What is left at lock: only first + `sign` · third angle counts; `angle` is that, in degrees within ±180."""
+
+    sign: int
+    angle: float
+
+
+@dataclass(frozen=True)
 class EulerSolution:
-    """R is the whole rotation; `R_progress` the part that is applied, which the aircraft shows."""
+    """R is the whole rotation; `R_progress` the part that is applied, which the aircraft shows.
+
+    `recovered`: the angles read back from R. `arcs` (3, 3, 3): for each turn of the whole rotation its arc's frame in
+    the world, with columns from the middle to the arc's start, a quarter turn on, and the axis; `ends` (3, 3): where
+    the arcs end, in rows.
+    """
 
     R: Array
     factors: tuple[dict[str, Any], ...]
@@ -43,9 +59,17 @@ class EulerSolution:
     axis_angle: dict[str, Any]
     lock_distance: float
     locked: bool
+    left: Left | None
     R_progress: Array
     recovered: dict[str, float]
     turns: tuple[Turn, ...]
+    arcs: tuple[Array, ...]
+    ends: Array
+
+    def set_otherwise(self, p: EulerParams) -> bool:
+        """Whether the angles that were set are another triple than the one that is read back."""
+        pairs = zip(p.angles, self.recovered.values(), strict=True)
+        return not self.locked and any(abs(math.remainder(a - b, 360.0)) > SAME for a, b in pairs)
 
 
 def solve(p: EulerParams) -> EulerSolution:
@@ -58,6 +82,11 @@ def solve(p: EulerParams) -> EulerSolution:
     recovered, locked = euler.matrix_to_euler(R, p.order, p.frame)
     part = [min(max(p.progress - k, 0.0), 1.0) for k in range(3)]
     applied = [a * f for a, f in zip(radians, part, strict=True)]
+    arcs = arc_frames(p)
+    ends = [
+        radius * (arc[:, 0] * math.cos(a) + arc[:, 1] * math.sin(a))
+        for radius, arc, a in zip(RADII, arcs, radians, strict=True)
+    ]
     return EulerSolution(
         R=R,
         factors=tuple({"axis": f.axis, "angle": math.degrees(float(f.angle)), "R": f.R} for f in product),
@@ -65,10 +94,50 @@ def solve(p: EulerParams) -> EulerSolution:
         axis_angle={"axis": axis, "angle": math.degrees(float(angle))},
         lock_distance=distance,
         locked=bool(locked),
+        left=_left(p, radians[1]) if locked else None,
         R_progress=R if p.progress >= 3.0 else euler.euler_to_matrix(applied, p.order, p.frame),
         recovered={n: math.degrees(float(a)) for n, a in zip(p.names, recovered, strict=True)},
         turns=_turns(p, applied),
+        arcs=arcs,
+        ends=np.array(ends),
     )
+
+
+def arc_frames(p: EulerParams) -> tuple[Array, ...]:
+    """The frame of each turn's arc in the world, as in `EulerSolution`."""
+    first, second, _ = (axis_rotation(axis, math.radians(a)) for axis, a in zip(p.order, p.angles, strict=True))
+    if p.frame == "intrinsic":
+        befores = (first, first @ second)
+        later = [before @ _ARCS[axis] for before, axis in zip(befores, p.order[1:], strict=True)]
+    else:
+        befores = (first, second @ first)
+        later = [_seen_from(before, axis) for before, axis in zip(befores, p.order[1:], strict=True)]
+    return _ARCS[p.order[0]], *later
+
+
+def triple_of(p: EulerParams, R: Array) -> dict[str, float]:
+    """The angles of a rotation in a state's order and frame, in degrees, by the names of their parameters.
+
+    Of the two triples the one within the bounds of the parameters, or, where both are, nearer to the present angles.
+    """
+    found, _ = euler.matrix_to_euler(R, p.order, p.frame)
+    triples = [np.degrees(found).tolist(), np.degrees(euler.other_triple(found, p.order)).tolist()]
+    bounds = [p.bounds(name) for name in p.names]
+
+    def beyond(triple: list[float]) -> tuple[bool, float]:
+        out = any(not low - SAME <= a <= high + SAME for a, (low, high) in zip(triple, bounds, strict=True))
+        away = sum(abs(math.remainder(a - b, 360.0)) for a, b in zip(triple, p.angles, strict=True))
+        return out, away
+
+    best = min(triples, key=beyond)
+    kept = [min(max(a, low), high) for a, (low, high) in zip(best, bounds, strict=True)]
+    return dict(zip(p.names, kept, strict=True))
+
+
+def _left(p: EulerParams, middle: float) -> Left:
+    sign = euler.lock_sign(middle, p.order, p.frame)
+    first, _, third = p.angles
+    return Left(sign, math.remainder(first + sign * third, 360.0))
 
 
 def _turns(p: EulerParams, applied: list[float]) -> tuple[Turn, ...]:
@@ -82,24 +151,23 @@ def _turns(p: EulerParams, applied: list[float]) -> tuple[Turn, ...]:
             back = quaternion.conjugate(before)
             in_world = quaternion.multiply(turn, before)
             turn = _floats(quaternion.multiply(back, in_world))
-            seen = _floats(quaternion.multiply(back, _seen_from(before, axis)))
+            arc = quaternion.from_matrix(_seen_from(quaternion.to_matrix(before), axis))
+            seen = _floats(quaternion.multiply(back, arc))
             before = in_world
         else:
             before = quaternion.multiply(before, turn) if p.frame == "extrinsic" else before
         current = k < p.progress < k + 1
-        name = SHORT[p.names[k]] if p.proper else p.names[k]
-        turns.append(Turn(name, math.degrees(angle), turn, seen, current))
+        turns.append(Turn(p.turns[k].short, math.degrees(angle), turn, seen, current))
     return tuple(turns)
 
 
-def _seen_from(before: Array, axis: str) -> Array:
-    """Frame (a quaternion in the world) of an arc about a world axis, from where the nose (or wing) now points."""
-    body = quaternion.to_matrix(before)
+def _seen_from(body: Array, axis: str) -> Array:
+    """Frame in the world of an arc about a world axis, from where the nose (or wing) of a body then points."""
     normal = np.eye(3)["xyz".index(axis)]
     flat = [v - normal * (normal @ v) for v in (body[:, "xyz".index(SEEN[axis])], body[:, 1], body[:, 2])]
     start = next(v for v in flat if v @ v > 0.01)
     start = start / math.sqrt(start @ start)
-    return quaternion.from_matrix(np.column_stack([start, np.cross(normal, start), normal]))
+    return np.column_stack([start, np.cross(normal, start), normal])
 
 
 def _floats(q: Array) -> Quaternion:
@@ -107,9 +175,5 @@ def _floats(q: Array) -> Quaternion:
     return w, x, y, z
 
 
-def _arc_frame(axis: str) -> Quaternion:
-    normal, start = np.eye(3)["xyz".index(axis)], np.eye(3)["xyz".index(SEEN[axis])]
-    return _floats(quaternion.from_matrix(np.column_stack([start, np.cross(normal, start), normal])))
-
-
-ARC_FRAMES = {axis: _arc_frame(axis) for axis in "xyz"}
+_ARCS = {axis: _seen_from(np.eye(3), axis) for axis in "xyz"}
+ARC_FRAMES = {axis: _floats(quaternion.from_matrix(frame)) for axis, frame in _ARCS.items()}

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from sims.gimbal_lock import actions
 from sims.gimbal_lock.panes import panes
-from sims.gimbal_lock.params import GimbalParams
-from sims.gimbal_lock.readouts import RINGS, ROTATION, caption, describe, readouts
+from sims.gimbal_lock.params import LOCK, GimbalParams
+from sims.gimbal_lock.readouts import ROTATION, caption, describe, readouts
 from sims.gimbal_lock.scene import GimbalScene
 from sims.gimbal_lock.solution import GimbalSolution, solve
 from sims.kit.sim import Action, Contract, Objective, Sim, View
@@ -31,9 +31,9 @@ SIM = Sim(
     scene=GimbalScene,
     caption=caption,
     readouts=readouts,
-    folds=(RINGS, ROTATION,),
+    folds=(LOCK, ROTATION),
     describe=describe,
-    view=View((3.6, -3.3, 1.7), (0.0, 0.0, -0.1), 1.9),
+    view=View((3.6, -3.3, 1.7), (0.0, 0.0, -0.05), 2.05),
     panes=panes,
     actions=(
         Action("lock", "Go to gimbal lock", "Turn the middle ring to 90°", actions.go_to_lock),
@@ -43,24 +43,25 @@ SIM = Sim(
         ),
         Action(
             "try-lost", "Try to turn about the lost axis",
-            "At lock: a ghost turns about it; see whether the rings can follow", actions.try_lost_axis,
+            "At lock: a ghost turns about it; see which detour the rings need to follow", actions.try_lost_axis,
         ),
         Action(
             "mark", "Mark this orientation", "Leave a ghost of the aircraft here, to compare with", actions.mark,
             "Show",
         ),
     ),
+    handles=actions.HANDLES,
     states={
         "turned": {"yaw": 30, "pitch": 35, "roll": -25},
         "lock up": {"pitch": 90},
         "lock down": {"pitch": -90, "yaw": 40, "roll": 25},
         "near lock": {"pitch": 80, "yaw": -20},
-        "just off lock": {"pitch": 89.99},
+        "just off lock": {"pitch": 89.99, "show_reach": True},
         "upside down": {"pitch": 180},
         "half": {"pitch": 48.590378},
         "same orientation": {"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
         "ghost about the lost axis": {"pitch": 90, "show_ghost": True, "ghost": (90, 60, 90)},
-        "ghost elsewhere": {"pitch": 20, "show_ghost": True, "ghost": (90, 60, 90), "show_reach": False},
+        "ghost elsewhere": {"pitch": 20, "show_ghost": True, "ghost": (90, 60, 90), "show_reach": True},
     },
 )  # fmt: skip
 

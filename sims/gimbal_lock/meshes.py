@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 import trimesh
 
 from geometry.arrays import Array
-from sims.kit.scene.bodies import joined
+from sims.gimbal_lock.rings import INNER, MIDDLE, OUTER, Ring
+from sims.kit.scene.bodies import joined, moved
 
 Profile = Sequence[tuple[float, float]]
 FULL = (0.0, 2.0 * math.pi)
@@ -23,23 +23,6 @@ YOKE, FLOOR, SIDE = 1.42, -1.6, math.radians(200.0)
 """Radius of the stand's arm, height of its foot, and the direction of the arm from the middle."""
 
 
-class Ring(NamedTuple):
-    """A ring of the mechanism: radius of its middle line; metres of its dashes and gaps, none for an unbroken stripe.
-
-    It turns about the axis `letter` of the ring outside it, by the parameter `angle`.
-    """
-
-    name: str
-    letter: str
-    angle: str
-    radius: float
-    dash: tuple[float, float] | None
-
-
-OUTER = Ring("outer", "z", "yaw", 1.22, (0.055, 0.055))
-MIDDLE = Ring("middle", "y", "pitch", 1.02, (0.19, 0.07))
-INNER = Ring("inner", "x", "roll", 0.82, None)
-RINGS = (OUTER, MIDDLE, INNER)
 _QUARTER = {
     "x": trimesh.transformations.rotation_matrix(math.pi / 2, (1, 0, 0)),
     "y": trimesh.transformations.rotation_matrix(math.pi / 2, (0, 1, 0)),
@@ -128,6 +111,11 @@ def stand() -> trimesh.Trimesh:
     column = rod(0.06, FLOOR, -YOKE)
     foot = lathe([(0.0, FLOOR), (0.62, FLOOR), (0.62, FLOOR + 0.03), (0.1, FLOOR + 0.1), (0.0, FLOOR + 0.1)])
     return joined([arm, *bearings, column, foot])
+
+
+def base(length: float, width: float) -> trimesh.Trimesh:
+    """A plate on the floor, long in x."""
+    return moved(trimesh.creation.box((length, width, 0.06)), (0.0, 0.0, 0.03))
 
 
 def mount(scale: float) -> trimesh.Trimesh:

@@ -8,18 +8,18 @@ from functools import cache
 import numpy as np
 
 from geometry.gimbal import singular_values
+from sims.gimbal_lock import digits
 from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.solution import GimbalSolution
 from sims.kit.pane import Pane
 from sims.kit.plot import Plot
-from sims.kit.readout import figure, quantity
 
 
 def panes(p: GimbalParams, s: GimbalSolution) -> Sequence[Pane]:
     """How the smallest singular value depends on the pitch."""
     least = s.singular_values.item(2)
-    note = f"{figure(least)} at {quantity(p.pitch, '°', 1)}"
-    return (_curve().pane(note, (abs(p.pitch), least)),)
+    note = f"{digits.small(least)} at {digits.angle(p.pitch, 1)}"
+    return (_curve().pane(note, (abs(p.pitch), least), handle="effort", label="Pitch of the middle ring"),)
 
 
 @cache

@@ -8,6 +8,8 @@ from typing import Annotated
 from sims.kit.fields import Slider, Switch, Vector
 from sims.kit.params import Params
 
+LOCK = "How far from lock"
+"""A fold."""
 NEAR = 0.2
 """The smallest singular value below which the sim warns."""
 NEAR_PITCH = math.degrees(math.asin(1.0 - NEAR**2))
@@ -23,7 +25,7 @@ class GimbalParams(Params):
     """Turn of the middle ring in the outer one, about its Y"""
     roll: Annotated[float, Slider(-180, 180, step=1, unit="°", symbol="φ", title="Inner roll")] = 0
     """Turn of the inner ring in the middle one, about its X; the aircraft is fixed in it"""
-    show_reach: Annotated[bool, Switch(title="Show reach", group="Show")] = True
+    show_reach: Annotated[bool, Switch(title="Show reach", group=LOCK)] = False
     """The angular velocities that the three rings can make together"""
     show_ghost: Annotated[bool, Switch(title="Show ghost", group="Show")] = False
     """A second aircraft at a marked orientation, to compare with"""

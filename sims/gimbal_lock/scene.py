@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
-from sims.gimbal_lock import meshes
-from sims.gimbal_lock.meshes import RINGS, Ring
+from sims.gimbal_lock import digits, meshes
 from sims.gimbal_lock.params import GimbalParams
+from sims.gimbal_lock.rings import RINGS, Ring
 from sims.gimbal_lock.solution import GimbalSolution
-from sims.kit.palette import DASHES
+from sims.kit.palette import DASHES, RGB
 from sims.kit.readout import figure, quantity
 from sims.kit.scene.nodes import Label
 from sims.kit.scene.pieces import arc_pieces
 from sims.kit.scene.stage import Stage
+from sims.kit.types import Vector
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
 STROKES = {"length": ((0.98, 0.0, 0.0), (-0.88, 0.0, 0.0)), "span": ((-0.1, 0.98, 0.0), (-0.1, -0.98, 0.0))}
 """Dashed through the ghost of the aircraft, from nose to tail and from tip to tip."""
-PER_RATE = 0.46
-"""Metres of the ellipsoid for an angular velocity that is as large as the ring rates together."""
+PER_RATE = 0.76
+"""Metres of the ellipsoid for an angular velocity that is as large as the ring rates together: far from lock it is
+round the aircraft."""
 FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
 TIPS = {"z": 1.74, "y": 1.55, "x": 1.55}
@@ -40,6 +43,13 @@ WIDTHS = {"z": 6.0, "y": 4.0, "x": 2.5}
 """Widths of the axes' lines, in pixels: where two coincide, both are seen."""
 BEYOND = 0.07
 """How far beyond its axis a label stands, in metres."""
+GRIP = 0.075
+"""Radius of what a ring is held by."""
+LAMPS = (0.72, 0.62, meshes.FLOOR)
+"""Where the lamps stand: beside the foot, to its right in the first view."""
+GAP = 0.22
+"""Metres between two lamps."""
+LIT, OUT = (255, 205, 20), (62, 68, 76)
 CIRCLE = arc_pieces(1.0, 2.0 * math.pi, 0.0, None)
 
 
@@ -63,6 +73,13 @@ class GimbalScene:
             stage.lines(f"/ghost/{name}", "ghost", AIRCRAFT * np.array(ends), width=1.5, dash=(0.05, 0.04))
         self.ghost_label = stage.label("/ghost/label", "", (-0.75, 0.0, 0.4))
         self.reach = Reach(stage)
+        self.axes = np.eye(3)
+        self.grips = [stage.grip(ring.grip, GRIP, axis=partial(self._axis, k)) for k, ring in enumerate(RINGS)]
+        self.lamps = Lamps(stage)
+
+    def _axis(self, k: int) -> Vector:
+        axis: Vector = self.axes[:, k]
+        return axis
 
     def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
         """The ring; and its pivots and axis, which stay with what holds it."""
@@ -81,7 +98,11 @@ class GimbalScene:
         for node, wxyz in zip(self.rings, s.rings, strict=True):
             node.pose(wxyz)
         for ring, label, angle in zip(RINGS, self.labels, p.angles, strict=True):
-            label.text(f"{ring.letter.upper()} {ring.angle} {quantity(angle, '°', 0)}")
+            label.text(f"{ring.letter.upper()} {ring.angle} {digits.angle(angle)}")
+        self.axes = s.axes
+        for grip, place in zip(self.grips, s.grips.tolist(), strict=True):
+            grip.pose(position=place)
+        self.lamps.draw(s)
         self.reach.draw(p, s)
         self.ghost.show(s.ghost is not None and s.ghost.angle > SAME)
         if s.ghost is not None:
@@ -99,11 +120,11 @@ class Reach:
         self.outline = stage.lines("/reach/shape/outline", "ghost", width=1.2)
         self.outline.pieces(np.concatenate([np.roll(CIRCLE, k, axis=2) for k in range(3)]))
         self.weak = stage.group("/reach/weak")
-        stage.lines("/reach/weak/axis", "warn", [(0, 0, -LOST), (0, 0, LOST)], width=2.5, dash=(0.06, 0.06))
+        stage.lines("/reach/weak/axis", "ink", [(0, 0, -LOST), (0, 0, LOST)], width=2.5, dash=(0.06, 0.06))
         self.weak_label = stage.label("/reach/weak/label", "", NEAR_TIP, anchor="top-center")
         self.lost = stage.group("/reach/lost")
         for name, end in (("arrow", LOST), ("opposite", -LOST)):
-            stage.arrow(f"/reach/lost/{name}", "warn", (0.0, 0.0, 0.0), (0.0, 0.0, end), radius=0.025)
+            stage.arrow(f"/reach/lost/{name}", "ink", (0.0, 0.0, 0.0), (0.0, 0.0, end), radius=0.025)
         stage.label("/reach/lost/label", "⚠ no ring turns about this", NEAR_TIP, anchor="top-center")
 
     def draw(self, p: GimbalParams, s: GimbalSolution) -> None:
@@ -114,4 +135,30 @@ class Reach:
         self.outline.scale((a, b, c))
         self.lost.show(s.lost_axis is not None)
         self.weak.show(s.near)
-        self.weak_label.text(f"⚠ rings must turn {figure(s.effort, 0)}× as fast")
+        if s.near:
+            self.weak_label.text(f"⚠ rings must turn {figure(s.effort, 0)}× as fast")
+
+
+class Lamps:
+    """One for each way to turn, which grows dark as that one is lost; in a row beside the stand."""
+
+    def __init__(self, stage: Stage) -> None:
+        half = math.radians(47.5 / 2.0)  # across the first view
+        stage.group("/lamps").pose((math.cos(half), 0.0, 0.0, math.sin(half)), LAMPS)
+        stage.mesh("/lamps/base", meshes.base(3 * GAP, GAP), (70, 76, 84))
+        self.bulbs = [stage.ball(f"/lamps/{k}", 0.08, "ink") for k in range(3)]
+        for k, bulb in enumerate(self.bulbs):
+            bulb.pose(position=((k - 1) * GAP, 0.0, 0.11))
+        self.words = stage.label("/lamps/label", "", (0.0, 0.0, 0.26), anchor="bottom-center")
+
+    def draw(self, s: GimbalSolution) -> None:
+        for bulb, glow in zip(self.bulbs, s.glow, strict=True):
+            bulb.color(_mixed(glow))
+            bulb.scale(1.0 if glow else 0.7)
+        self.words.text(f"{s.dof} ways to turn" if s.dof == 3 else f"⚠ {s.dof} ways to turn")
+
+
+def _mixed(glow: float) -> RGB:
+    """The colour of a lamp that is lit by so much."""
+    red, green, blue = (round(out + (lit - out) * glow) for out, lit in zip(OUT, LIT, strict=True))
+    return red, green, blue

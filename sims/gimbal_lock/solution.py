@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from geometry import euler, gimbal, quaternion
 from geometry.arrays import Array
 from geometry.rotations import matrix_to_axis_angle
 from sims.gimbal_lock.params import NEAR, GimbalParams
+from sims.gimbal_lock.rings import RINGS
 from sims.kit.types import Quaternion
 
 
@@ -36,7 +39,8 @@ class Ghost:
 class GimbalSolution:
     """Columns of `axes`: outer, middle, inner ring axis in the world. What doesn't exist is None.
 
-    `rings`: poses of the rings, each in the frame of the one outside it. `reach`: the frame of the ellipsoid of
+    `rings`: poses of the rings, each in the frame of the one outside it; `grips`: the place in the world (3, 3) where
+    each is held, in rows. `reach`: the frame of the ellipsoid of
     reachable angular velocities, whose half-axes are the singular values; `weakest_axis` is the last of its axes, and
     `rates` the ring rates that turn about it at 1°/s, or, at lock, come nearest to that.
     """
@@ -52,6 +56,7 @@ class GimbalSolution:
     reduced: Reduced | None
     ghost: Ghost | None
     rings: tuple[Quaternion, Quaternion, Quaternion]
+    grips: Array
     reach: Quaternion
 
     @property
@@ -61,8 +66,13 @@ class GimbalSolution:
 
     @property
     def effort(self) -> float:
-        """The fastest of the `rates`."""
-        return float(max(map(abs, self.rates.tolist())))
+        """The fastest of the `rates`; infinite at lock, where none are enough."""
+        return float(max(map(abs, self.rates.tolist()))) if self.dof == 3 else math.inf
+
+    @property
+    def glow(self) -> tuple[float, ...]:
+        """How brightly each way to turn is lit: its singular value, 1 at most, and 0 for one that is lost."""
+        return tuple(min(v, 1.0) if k < self.dof else 0.0 for k, v in enumerate(self.singular_values.tolist()))
 
 
 def solve(p: GimbalParams) -> GimbalSolution:
@@ -72,9 +82,10 @@ def solve(p: GimbalParams) -> GimbalSolution:
     directions, lengths = gimbal.ellipsoid(yaw, pitch)
     weakest = directions[:, 2]
     lock = gimbal.at_lock(yaw, pitch, roll)
+    axes = gimbal.ring_axes(yaw, pitch)
     return GimbalSolution(
         R=R,
-        axes=gimbal.ring_axes(yaw, pitch),
+        axes=axes,
         singular_values=lengths,
         dof=int(gimbal.degrees_of_freedom(lengths)),
         lost_axis=gimbal.lost_axis(yaw, pitch),
@@ -88,8 +99,19 @@ def solve(p: GimbalParams) -> GimbalSolution:
             quaternion.axis_quaternion("y", pitch),
             quaternion.axis_quaternion("x", roll),
         ),
+        grips=_grips(axes, R),
         reach=_floats(quaternion.from_matrix(directions)),
     )
+
+
+def _grips(axes: Array, R: Array) -> Array:
+    """Where the rings are held: outer and middle are spanned by two of the rings' axes, the inner one turns as R."""
+    outer, middle, inner = axes.T
+    directions = (_REST[0] @ (inner, middle, outer), _REST[1] @ (inner, middle, outer), R @ _REST[2])
+    return np.array([ring.radius * each for ring, each in zip(RINGS, directions, strict=True)])
+
+
+_REST = np.array([ring.held for ring in RINGS])
 
 
 def _ghost(p: GimbalParams, R: Array) -> Ghost:

@@ -8,17 +8,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from html import escape
 from typing import Any, NamedTuple
 
 from sims.kit import controls, pane, readout
+from sims.kit.fields import Opened
 from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.paste import Paste
-from sims.kit.sim import Action, Library, Sim, Typed
+from sims.kit.sim import Action, Dial, Library, Sim, Typed
 from sims.kit.types import Place
 
 PANES = "panes"
+ARRANGED = "arranged"
+"""The part that tells the page in which order the controls stand: their names, which nobody sees."""
 Parts = dict[str, str]
 
 
@@ -42,30 +46,42 @@ class Column:
         """What a state shows. Without a solution yet: the controls alone."""
         offers = self.sim.offers(params, solution, *self._library)
         parts, values = dict(self._controls_of(offers)), controls.values(offers)
+        parts[ARRANGED] = " ".join(self._names("", params))
         if solution is not None:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
             for handle, place in places.items():
                 values |= {f"{handle}.{k}": value for k, value in enumerate(_clean(place))}
+            values |= {dial.handle: dial.value(params, solution) for dial in self.sim.dials}
         return Shown(parts, values)
 
     def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
         """The whole column; `only`: of the controls, those of these parameters and actions."""
         offers = self.sim.offers(params, solution, *self._library)
-        parts = {f"control:{name}": controls.html(offers, name) for name in params.visible}
+        parts = self._inputs(offers, filled=True)
         if solution is not None:
             places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
             parts |= self._rest(params, solution, places)
-        return "".join(self._page(parts, only))
+        return "".join(self._page(parts, params, only))
 
     def _controls_of(self, offers: Offers[Any]) -> Parts:
         """The controls without what they show, made anew where what they offer may have changed."""
         form = offers.form()
         if form != self._form:
             self._form = form
-            names = offers.params.visible
-            self._controls = {f"control:{name}": controls.html(offers, name, filled=False) for name in names}
+            self._controls = self._inputs(offers, filled=False)
         return self._controls
+
+    def _inputs(self, offers: Offers[Any], *, filled: bool) -> Parts:
+        """The controls and buttons; what is idle stays in the page, hidden."""
+        idle = offers.idle()
+        found = {f"control:{name}": controls.html(offers, name, filled=filled) for name in offers.params.visible}
+        first = next((a.name for a in self.sim.actions if not a.group and a.name not in idle), "")
+        found |= {f"action:{a.name}": button(a, primary=a.name == first) for a in self.sim.actions}
+        return {
+            name: f'<div hidden="">{html}</div>' if name.partition(":")[2] in idle else html
+            for name, html in found.items()
+        }
 
     def _rest(self, params: Params, solution: Any, places: Mapping[str, Place | None]) -> Parts:
         """What follows from the solution; `places` are those of the nodes that can be typed."""
@@ -76,6 +92,8 @@ class Column:
             found[f"read:{title}"] = readout.render(read.get(title, ()))
         for typed in sim.typed:
             found[f"control:{typed.handle}"] = "" if places[typed.handle] is None else placed(typed)
+        for dial in sim.dials:
+            found[f"control:{dial.handle}"] = "" if dial.value(params, solution) is None else dialled(dial)
         if sim.files is not None:
             preview = sim.files.preview(params, *self._library)
             found["preview"] = "" if preview is None else readout.render([preview])
@@ -85,14 +103,14 @@ class Column:
             found |= {f"pane:{each.name}": pane.content(each) for each in panes}
         return found
 
-    def _page(self, parts: Parts, only: Collection[str] | None) -> Iterator[str]:
+    def _page(self, parts: Parts, params: Params, only: Collection[str] | None) -> Iterator[str]:
         def part(name: str, tag: str = "div", kind: str = "") -> str:
             # the frames of pictures are parts within a part
             inside = re.sub(r'data-part="(pane:[^"]*)">', lambda frame: frame[0] + parts[frame[1]], parts.get(name, ""))
             return f'<{tag} class="{kind}" data-part="{escape(name)}">{inside}</{tag}>'
 
         def wanted(action: Action) -> bool:
-            return not action.group if only is None else action.name in only
+            return not action.group if only is None else not {*action.names}.isdisjoint(only)
 
         sim = self.sim
         yield part("caption", "p", "s3-caption")
@@ -100,12 +118,13 @@ class Column:
         if sim.panes is not None:
             yield part(PANES, kind="s3-panes")
         yield '<fieldset class="s3-controls"><legend class="s3-hidden">Controls</legend>'
-        first = (
-            self._names("") if only is None else [name for name in dict.fromkeys(only) if name in sim.params.visible]
-        )
+        yield from (part(f"control:{dial.handle}") for dial in sim.dials if only is None or dial.handle in only)
+        wished = self._names("", params) if only is None else dict.fromkeys(only)
+        first = [name for name in wished if name in sim.params.visible]
         yield from (part(f"control:{name}") for name in first)
+        yield f'<p hidden="" data-part="{ARRANGED}">{" ".join(first)}</p>'
         yield from (part(f"control:{typed.handle}") for typed in sim.typed if only is None)
-        yield self._actions(wanted)
+        yield self._actions([part(f"action:{a.name}", "div", "s3-act") for a in sim.actions if wanted(a)])
         if only is None:
             yield from (self._fold(title, part) for title in self._titles())
         yield f"</fieldset>{toolbar(sim.downloads)}"
@@ -121,22 +140,29 @@ class Column:
             inside.append(upload(files.endings))
         if self.sim.paste is not None and title == self.sim.paste.group:
             inside.append(pasted(self.sim.paste))
-        pressed = "".join(button(action) for action in self.sim.actions if action.group == title)
+        pressed = "".join(part(f"action:{a.name}", "div", "s3-act") for a in self.sim.actions if a.group == title)
         inside += [f'<div class="s3-actions">{pressed}</div>'] * bool(pressed)
-        return f'<details class="s3-fold"><summary>{escape(title)}</summary>{"".join(inside)}</details>'
+        opens = self._opens(title)
+        return f'<details class="s3-fold"{opens}><summary>{escape(title)}</summary>{"".join(inside)}</details>'
 
-    def _actions(self, wanted: Callable[[Action], bool]) -> str:
-        shown = [action for action in self.sim.actions if wanted(action)]
-        inside = "".join(button(action, primary=not k) for k, action in enumerate(shown))
+    def _opens(self, title: str) -> str:
+        """What a fold's opening and closing choose, where that is part of the state."""
+        for name, kind in self.sim.params.kinds.items():
+            if isinstance(kind, Opened) and (word := next((w for w, t in kind.folds.items() if t == title), "")):
+                return f' data-fold="{escape(name)}" data-open="{escape(word)}" data-closed="{escape(kind.closed)}"'
+        return ""
+
+    def _actions(self, shown: Iterable[str]) -> str:
         return (
-            f'<div class="s3-actions">{inside}'
+            f'<div class="s3-actions">{"".join(shown)}'
             '<button type="button" data-act="reset" title="Back to the state and the view of the link that you opened">'
             'Reset</button><button type="button" data-s3="home" title="Back to the sim’s own view of the scene">'
             "Home view</button></div>"
         )
 
-    def _names(self, group: str) -> list[str]:
-        return [name for name in self.sim.params.visible if self.sim.params.kinds[name].group == group]
+    def _names(self, group: str, params: Params | None = None) -> list[str]:
+        names = self.sim.params.visible if params is None else params.arranged
+        return [name for name in names if self.sim.params.kinds[name].group == group]
 
     def _titles(self) -> list[str]:
         groups = [self.sim.params.kinds[name].group for name in self.sim.params.visible]
@@ -163,6 +189,15 @@ def placed(typed: Typed[Any, Any]) -> str:
     """Three boxes for what dragging a node of the scene sets."""
     inside = controls.vector(typed.handle, typed.title, "xyz", (None, None, None), typed.unit, typed.step)
     return controls.control(typed.handle, typed.title, inside, typed.description, kind="s3-line")
+
+
+@lru_cache(maxsize=16)
+def dialled(dial: Dial[Any, Any]) -> str:
+    """A slider for a number that follows from the state."""
+    inside = controls.slider(dial.handle, dial.title, None, (dial.low, dial.high), dial.step, dial.unit)
+    return controls.control(
+        dial.handle, dial.title, inside, dial.description, kind="s3-line", target=f"s-{dial.handle}"
+    )
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:

@@ -63,7 +63,7 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
     """The controls of a parameter, which show its value where they are `filled`."""
     kind = offers.params.kinds[name]
     value = getattr(offers.params, name) if filled else None
-    about = type(offers.params).model_fields[name].description or ""
+    about = offers.about(name)
     label = offers.label(name)
     match kind:
         case fields.Switch():
@@ -81,6 +81,8 @@ def html(offers: AnyOffers, name: str, *, filled: bool = True) -> str:
                 offers.params.regions().get(name, ()),
             )  # fmt: skip
             return control(name, label, inside, about, kind="s3-line", target=f"s-{name}")
+        case fields.Opened():
+            return ""  # the folds are its control
         case fields.NumberBox():
             inside = box(name, label, value, kind.unit, offers.increment(name), steps=True)
             return control(name, label, inside, about, kind="s3-one", target=f"b-{name}")

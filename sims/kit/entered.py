@@ -35,8 +35,7 @@ def entered(offers: Offers[Any], name: str, text: str) -> dict[str, Any]:
                 raise KeyError(text)
             return {name: text}
         case fields.Vector() | fields.Numbers():
-            value = getattr(offers.params, field)
-            ranges = kind.ranges(value, offers.bounds(field))
+            ranges = offers.params.ranges(field)
             if part:
                 return {name: number(text, _of(ranges, part), kind.unit)}
             return {field: row(text, ranges, kind.unit)}

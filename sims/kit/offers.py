@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, Generic, TypeVar
 
 from sims.kit.params import Params
@@ -24,6 +24,10 @@ class Offers(Generic[P]):
         """All that labels, bounds and marks depend on."""
         return self.params.form()
 
+    def idle(self) -> Collection[str]:
+        """Names of the controls and buttons that mean nothing in this state, as its `form` says: they aren't shown."""
+        return ()
+
     def bounds(self, name: str) -> tuple[float, float]:
         """Least and greatest value that a control goes to."""
         return self.params.bounds(name)
@@ -39,6 +43,10 @@ class Offers(Generic[P]):
     def label(self, name: str) -> str:
         """Words beside a control."""
         return self.params.label(name)
+
+    def about(self, name: str) -> str:
+        """What a control is for."""
+        return self.params.about(name)
 
     def entries(self, name: str) -> Any:
         """The entries of a list, which have a control each; None for a number without one."""

@@ -74,6 +74,10 @@ _FROM_FILM: npt.NDArray[np.float64] = np.array(
 )
 
 
+FAINT = 0.3
+"""Share of its own colour in a faint one."""
+
+
 @dataclass(frozen=True)
 class Palette:
     """One theme; each colour has a role, and each role a second cue besides its colour."""
@@ -102,6 +106,11 @@ class Palette:
     def line(self, role: str) -> RGB:
         """What to send for lines and arrows of a role, so that they show in the role's colour."""
         return before_tone_mapping(getattr(self, role), linear=True)
+
+    def faint(self, role: str) -> RGB:
+        """The same for lines that are only there to measure by: their colour is mostly the page's."""
+        mixed = [FAINT * a + (1.0 - FAINT) * b for a, b in zip(rgb(getattr(self, role)), rgb(self.page), strict=True)]
+        return before_tone_mapping("#{:02x}{:02x}{:02x}".format(*map(round, mixed)), linear=True)
 
 
 LIGHT = Palette(

@@ -33,6 +33,10 @@ class Pane:
     note: str = ""
     wide: bool = False
     """It takes the whole width where pictures stand side by side."""
+    large: bool = False
+    """It is what the sim is about: the column makes room for it, and the read-outs stand under it, by the controls."""
+    line: str = ""
+    """HTML of a read-out that stands over it."""
 
 
 class Picture:
@@ -124,16 +128,22 @@ class Picture:
             ' click a place, or press Enter for the middle."'
         )
 
-    def handle(self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "") -> None:
+    def handle(
+        self, name: str, at: Point, label: str, letter: str, *, where: str = "", link: str = "",
+        corner: tuple[int, int] = (1, -1),
+    ) -> None:  # fmt: skip
         """A point that pointer and keyboard can move; the session hears of it under `name`.
 
         `where` says its place where that isn't the pixel. It is highlighted with what else `link` is, and a click on it
-        selects that.
+        selects that. Its letter stands at a `corner`: to the right (1) or left (-1), below (1) or above (-1).
         """
+        right, down = corner
+        anchor = ' text-anchor="end"' if right < 0 else ""
         x, y = float(at[0]), float(at[1])
         mark = (
             f'<circle class="s3-grab" r="{GRAB:g}"/><circle class="s3-ring" r="15"/><circle class="s3-core" r="5"/>'
-            f'<text x="22" y="-18" class="s3-halo" fill="var(--held)" font-size="28">{escape(letter)}</text>'
+            f'<text x="{22 * right}" y="{-18 if down < 0 else 38}"{anchor} class="s3-halo" fill="var(--held)"'
+            f' font-size="28">{escape(letter)}</text>'
         )
         self._handles.append((x, y, held(name, (x, y), f"{label}: {where or f'{x:.1f}, {y:.1f} pixels'}", mark, link)))
 
@@ -200,7 +210,7 @@ class Picture:
         other._points, other._handles = [*self._points], [*self._handles]
         return other
 
-    def pane(self, note: str = "", *, wide: bool = False) -> Pane:
+    def pane(self, note: str = "", *, wide: bool = False, large: bool = False, line: str = "") -> Pane:
         """The finished picture."""
         w, h, name = self.width, self.height, escape(self.name)
         frame = f'<rect x="-0.5" y="-0.5" width="{w}" height="{h}" {self._ground}/>'
@@ -214,7 +224,7 @@ class Picture:
             f'<defs>{tip}{clip}</defs>{frame}<g clip-path="url(#{name}-clip)">{"".join(self._parts)}</g>'
             f"{''.join(self._over)}{''.join(self._reachable())}</svg>"
         )
-        return Pane(self.name, self.title, svg, note, wide)
+        return Pane(self.name, self.title, svg, note, wide, large, line)
 
     def _reachable(self) -> list[str]:
         """Points and handles: a handle goes over what is so near that the pointer may mean it, and under the rest."""
@@ -245,13 +255,14 @@ def _linked(link: str) -> str:
 
 def figure(pane: Pane) -> str:
     """Where a pane goes."""
-    return f'<figure class="s3-pane{" s3-wide" if pane.wide else ""}" data-part="pane:{escape(pane.name)}"></figure>'
+    kind = "s3-pane" + " s3-wide" * pane.wide + " s3-large" * pane.large
+    return f'<figure class="{kind}" data-part="pane:{escape(pane.name)}"></figure>'
 
 
 def still(pane: Pane) -> str:
-    """Its picture for a page on which nothing can be held: marks that could be are said as places."""
+    """Its picture with the line over it, for a page on which nothing can be held: marks are said as places."""
     svg = re.sub(r' (data-(handle|pick)|tabindex|aria-roledescription)="[^"]*"', "", pane.svg)
-    return (
+    return pane.line + (
         svg.replace('role="application"', 'role="img"')
         .replace('role="button"', 'role="img"')
         .replace(" Arrow keys move it.", "")
@@ -263,4 +274,4 @@ def content(pane: Pane) -> str:
     title = safe(pane.title)
     larger = f'<button type="button" data-s3="enlarge" aria-label="{title}: larger" title="Large or small">⤢</button>'
     note = f"<span> {escape(pane.note)}</span>"
-    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.svg}"
+    return f"<figcaption><b>{title}{note}</b>{larger}</figcaption>{pane.line}{pane.svg}"

@@ -6,7 +6,7 @@ A field's type says its kind (`sims.kit.fields`); the string below it says what 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar, Self
 from urllib.parse import urlencode
 
@@ -35,6 +35,9 @@ class Params(BaseModel):
     """Those with bounds."""
     visible: ClassVar[tuple[str, ...]] = ()
     """Names of those that have a control."""
+    opening: ClassVar[Mapping[str, Any]] = {}
+    """What differs from the defaults in the state that a link without parameters opens; the link of the defaults
+    themselves then names the first of these."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -50,9 +53,22 @@ class Params(BaseModel):
         """Least and greatest value of a numeric field in this state; override where they depend on its `form`."""
         return self.numeric[name].bounds
 
+    def ranges(self, name: str) -> Sequence[tuple[float, float]]:
+        """The same for each number of a numeric field; override where those of a vector's entries depend on `form`."""
+        return self.numeric[name].ranges(getattr(self, name), self.bounds(name))
+
     def label(self, name: str) -> str:
         """Words beside the control of a field in this state."""
         return self.kinds[name].label
+
+    def about(self, name: str) -> str:
+        """What the control of a field is for in this state, in a sentence without its full stop."""
+        return type(self).model_fields[name].description or ""
+
+    @property
+    def arranged(self) -> tuple[str, ...]:
+        """Those that have a control, in the order in which the controls stand in this state."""
+        return self.visible
 
     def entry_label(self, name: str, k: int) -> str:
         """Words beside the control of the k-th entry, from 0, of a list."""
@@ -90,7 +106,7 @@ class Params(BaseModel):
         if len(changes) == 1 and (fast := self._number_moved(*next(iter(changes.items())))):
             return fast
         state = self.model_copy(update=dict(changes))
-        kept = {name: kind.clamped(getattr(state, name), state.bounds(name)) for name, kind in self.numeric.items()}
+        kept = {name: kind.clamped(getattr(state, name), state.ranges(name)) for name, kind in self.numeric.items()}
         return self.changed({**changes, **kept})
 
     def _number_moved(self, name: str, value: Any) -> Self | None:
@@ -103,9 +119,9 @@ class Params(BaseModel):
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
         for name, kind in self.numeric.items():
-            value, bounds = getattr(self, name), self.bounds(name)
-            if not kind.within(value, bounds):
-                raise refusal([name], f"{name} must be {spans(kind.ranges(value, bounds))}, got {spell(value)}")
+            value, ranges = getattr(self, name), self.ranges(name)
+            if not kind.within(value, ranges):
+                raise refusal([name], f"{name} must be {spans(ranges)}, got {spell(value)}")
         return self
 
     def query(self) -> str:
@@ -113,12 +129,18 @@ class Params(BaseModel):
         return urlencode(self.query_items(), safe=",-.:")
 
     def query_items(self) -> dict[str, str]:
-        """Name and spelling of every field that isn't at its default."""
-        return {
+        """Name and spelling of every field that isn't at its default; none at all of the state that is opened with."""
+        found = {
             name: spell(value)
             for name, field in type(self).model_fields.items()
             if (value := getattr(self, name)) != field.default and value is not None
         }
+        if not self.opening or not found.keys() <= self.opening.keys():
+            return found
+        if all(getattr(self, name) == value for name, value in self.opening.items()):
+            return {}
+        first = next(iter(self.opening))
+        return found or {first: spell(getattr(self, first))}
 
     @classmethod
     def from_query(cls, items: Iterable[tuple[str, str]]) -> Self:
@@ -136,6 +158,8 @@ class Params(BaseModel):
                 given[name] = texts[0]
         state, wrong = cls._read(given)
         complaints += [cls._complaint(name, given.get(name, ""), allowed) for name, allowed in wrong.items()]
+        if not given and not complaints:
+            return cls(**cls.opening)
         if complaints or state is None:
             while wrong:  # what is left may be wrong without what went
                 given = {name: text for name, text in given.items() if name not in wrong}

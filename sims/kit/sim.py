@@ -66,6 +66,13 @@ class Action:
     run: Callable[..., Mapping[str, Any] | Iterator[Step]]
     group: str = ""
     """Fold in which it stands, closed at first; of those in none, the first one is what people do first."""
+    aliases: tuple[str, ...] = ()
+    """Names that it had before: course pages may know it by them."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its name, and those that it had before."""
+        return self.name, *self.aliases
 
 
 @dataclass(frozen=True)
@@ -83,6 +90,23 @@ class Typed(Generic[P, S]):
     place: Callable[[P, S], tuple[float, float, float] | None]
     step: float = 0.01
     unit: str = "m"
+
+
+@dataclass(frozen=True)
+class Dial(Generic[P, S]):
+    """A slider for a number that follows from the state; `handle` is told the number, as the only one of its place.
+
+    It shows what `value` finds, and hides where there is none. It is not state: what the handle sets is.
+    """
+
+    handle: str
+    title: str
+    description: str
+    low: float
+    high: float
+    value: Callable[[P, S], float | None]
+    step: float
+    unit: str = ""
 
 
 class Library(Protocol):
@@ -118,7 +142,11 @@ class Files:
 
 @dataclass(frozen=True)
 class View:
-    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres."""
+    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres.
+
+    With radius 0 it is from just there, at every size of the page; the scene then moves the viewpoint itself, by
+    `Stage.look_through`.
+    """
 
     position: tuple[float, float, float]
     look_at: tuple[float, float, float]
@@ -126,6 +154,8 @@ class View:
 
     def holding(self, places: Iterable[npt.ArrayLike]) -> View:
         """The same, or from so many steps farther away that these places are in sight; not those that run away."""
+        if not self.radius:
+            return self
         far = [math.dist(np.asarray(place, dtype=float), self.look_at) / self.radius for place in places]
         farthest = max((distance for distance in far if distance < RUN_AWAY), default=0.0)
         steps = max(0, math.ceil(math.log(max(farthest / SPARE, 1.0), STEP)))
@@ -175,7 +205,14 @@ class Sim(Generic[P, S]):
     """What dragging a node or a mark in a picture changes: of parameters and the place, in metres or pixels."""
     clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
     """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
+    eases: Callable[[P, P], Iterator[Step]] | None = None
+    """What is seen of a change when somebody chose or typed something, unless motion is reduced.
+
+    From the state before and the one that it leads to, which the last step must restore; the first is taken at once.
+    """
     typed: Sequence[Typed[P, S]] = ()
+    dials: Sequence[Dial[P, S]] = ()
+    """They stand before the other controls."""
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
     paste: Paste[P] | None = None

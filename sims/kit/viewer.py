@@ -70,7 +70,7 @@ class Viewer:
         home = self.sim.home(params, solution)
         if home != self._home:
             self._home = home
-            self._host.home(home.position, home.look_at, home.radius, moved=False)
+            self._host.home(home.position, home.look_at, home.radius, moved=not home.radius)
 
     def look_from(self, view: Sequence[float]) -> None:
         """Move this page's viewpoint: where it is and where it looks, x, y, z each. Raises GeometryError."""

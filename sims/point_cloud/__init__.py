@@ -6,15 +6,17 @@ from functools import partial
 
 from sims.kit.sim import Action, Contract, Files, Objective, Sim
 from sims.point_cloud import actions
+from sims.point_cloud.captions import caption
 from sims.point_cloud.datasets import DATASETS, dataset
+from sims.point_cloud.download import ply
 from sims.point_cloud.files import FORMATS
 from sims.point_cloud.library import Library
 from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.panes import panes
 from sims.point_cloud.params import CHOSEN, OWN, VIEWS, CloudParams, view_of
-from sims.point_cloud.readouts import BOX, ORIGIN, RESULT, caption, describe, preview, readouts
+from sims.point_cloud.readouts import BOX, ORIGIN, RESULT, describe, preview, readouts
 from sims.point_cloud.scene import CloudScene
-from sims.point_cloud.solution import CloudSolution, ply, solve
+from sims.point_cloud.solution import CloudSolution, solve
 
 __all__ = ["CONTRACT", "SIM", "CloudParams", "CloudSolution", "solve"]
 
@@ -40,13 +42,15 @@ SIM = Sim(
     view_of=view_of,
     panes=panes,
     actions=(
+        Action("grow", "Grow the cells", "Growing voxels: how few points keep the shape?", actions.grow),
         Action("play", "Play", "The process from its start; without one, growing voxels", actions.play),
         Action("step", "Next step", "The process one step on; from the last one back to its start", actions.next_step),
     ),
+    handles={"/second": actions.hold},
     clicks={"/cloud": actions.pick},
     states={
         "street": {"dataset": "street", "color": "intensity"},
-        "street without colours": {"dataset": "street"},
+        "street without colours": {"dataset": "street", "color": "rgb"},
         "statue": {"dataset": "statue", "color": "height"},
         "two scans": {"dataset": "two-scans"},
         "voxels": {"voxel_size": 0.1, "color": "height", "point_size": 4.0},
@@ -54,12 +58,16 @@ SIM = Sim(
         "normals": {"voxel_size": 0.05, "show_normals": True, "color": "normals"},
         "variation": {"dataset": "statue", "color": "variation", "selected": 20_000},
         "selected": {"selected": 50_000, "show_box": False},
+        "measured": {"voxel_size": 0.2, "selected": 10, "measure": True, "other": 900},
+        "cells": {"voxel_size": 0.15, "selected": 1_000, "show_box": False},
         "no such point": {"selected": 5_000_000},
         "ground marked": {"process": "ground", "step": 1},
         "things on the street": {"dataset": "street", "process": "clusters", "show_box": False, "voxel_size": 0.1},
         "outliers marked": {"dataset": "statue", "process": "outliers", "step": 1},
         "scans apart": {"dataset": "two-scans", "process": "register", "step": 0},
         "scans together": {"dataset": "two-scans", "process": "register", "step": 40},
+        "far apart": {"dataset": "two-scans", "process": "register", "turn": 90.0, "step": 40},
+        "out of reach": {"dataset": "two-scans", "process": "register", "shift": (30.0, 0.0, 0.0), "step": 40},
         "points to points": {"dataset": "two-scans", "process": "register", "step": 7, "method": "point"},
         "point of the moving scan": {"dataset": "two-scans", "process": "register", "step": 2, "selected": 150_000},
         "statue's surface": {"dataset": "statue", "process": "surface", "step": 2},

@@ -47,14 +47,23 @@ def _sent_ramp(kind: str) -> Colors:
     return before_film(ramp(kind))
 
 
-def of_values(values: Array, span: tuple[float, float], kind: str) -> Colors:
-    """Colours to send (N, 3) for numbers (N,); beyond the span they stay at its ends, and what is NaN is grey."""
+def of_values(values: Array, span: tuple[float, float], kind: str, bright: Array | None = None) -> Colors:
+    """Colours to send (N, 3) for numbers (N,); beyond the span they stay at its ends, and what is NaN is grey.
+
+    `bright` (N,) darkens them.
+    """
     low, high = span
     place = np.clip((values - low) * ((_STEPS - 1) / (high - low)), 0.0, _STEPS - 1.0)
     unknown = np.isnan(place)
-    sent = _sent_ramp(kind)[np.rint(np.where(unknown, 0.0, place)).astype(np.intp)]
+    at = np.rint(np.where(unknown, 0.0, place)).astype(np.intp)
+    sent = _sent_ramp(kind)[at] if bright is None else of_rgb(darkened(ramp(kind)[at], bright))
     sent[unknown] = of_rgb(np.array([GREY], np.uint8))[0]
     return np.asarray(sent)
+
+
+def darkened(colors: Colors, bright: Array | None) -> Colors:
+    """Colours (N, 3) times how bright (N,) they are, 0 to 1; themselves where that isn't known."""
+    return colors if bright is None else np.rint(colors * bright[:, None]).astype(np.uint8)
 
 
 def of_directions(normals: Array) -> Colors:

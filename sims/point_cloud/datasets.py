@@ -81,7 +81,7 @@ def two_scans() -> Cloud:
     )
     moved = np.round(se3.apply(se3.inverse(truth), second.points), DIGITS)
     sensor = np.broadcast_to(se3.apply(se3.inverse(truth), np.array(sensors[1])), moved.shape)
-    placed = Cloud("two-scans", moved, second.colors, second.intensity, sensor=sensor, truth=truth)
+    placed = Cloud("two-scans", moved, second.colors, second.intensity, sensor=sensor, apart=True, truth=truth)
     return _joined("two-scans", [first, placed])
 
 
@@ -143,4 +143,15 @@ def _joined(name: str, scans: Sequence[Cloud]) -> Cloud:
     colors = np.concatenate([one.colors for one in scans if one.colors is not None])
     intensity = np.concatenate([one.intensity for one in scans if one.intensity is not None])
     points, sensor = (np.concatenate(rows(attribute)) for attribute in ("points", "sensor"))
-    return Cloud(name, points, colors, intensity, None, scan, sensor, truth=scans[-1].truth, simulated=True)
+    return Cloud(
+        name,
+        points,
+        colors,
+        intensity,
+        None,
+        scan,
+        sensor,
+        apart=scans[-1].apart,
+        truth=scans[-1].truth,
+        simulated=True,
+    )

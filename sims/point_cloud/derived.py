@@ -6,8 +6,9 @@ nothing again. The newest few are kept: a slider that is dragged leaves many beh
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -22,11 +23,18 @@ from sims.point_cloud.cloud import Cloud, Colors
 BINS = 48
 LOCAL = ("normals", "variation")
 """Colours that follow from each point's neighbours."""
+SHADED = ("height", "rgb")
+"""Colours that may be darker without saying something else: of the others brightness is part of what they say."""
+TO_LIGHT = np.array([-0.36, -0.48, 0.8])
+DARKEST = 0.45
+"""How bright what faces away from the light is."""
+LIT = 20_000
+"""Cells of a cloud whose brightness is found, at most."""
 
 
 def parts(cloud: Cloud) -> Iterator[Indices]:
     """Rows of each scan, for scans that aren't registered yet; else all rows at once."""
-    if cloud.truth is None or cloud.scan is None:
+    if not cloud.apart or cloud.scan is None:
         yield np.arange(len(cloud))
     else:
         yield from (np.flatnonzero(cloud.scan == number) for number in (0, 1))
@@ -38,17 +46,26 @@ def thinned(cloud: Cloud, size: float) -> Cloud:
     if size == 0.0:
         return cloud
     begins("Downsampling")
-    thin = [_thinned(cloud if len(rows) == len(cloud) else cloud.only(rows), size) for rows in parts(cloud)]
+    thin = [
+        _thinned(cloud if len(rows) == len(cloud) else cloud.only(rows), cells)
+        for rows, cells in zip(parts(cloud), cells_of(cloud, size), strict=True)
+    ]
     return thin[0] if len(thin) == 1 else thin[0].followed_by(thin[1])
 
 
-def _thinned(cloud: Cloud, size: float) -> Cloud:
-    cells = clouds.voxels(cloud.points, size)
+@lru_cache(maxsize=4)
+def cells_of(cloud: Cloud, size: float) -> list[clouds.Voxels]:
+    """The cells of edge `size` in metres, of each scan by itself."""
+    return [clouds.voxels(cloud.points[rows], size) for rows in parts(cloud)]
+
+
+def _thinned(cloud: Cloud, cells: clouds.Voxels) -> Cloud:
     return cloud.only(cells.first).with_means(
         points=cells.points,
         colors=None if cloud.colors is None else np.rint(cells.mean(cloud.colors)).astype(np.uint8),
         intensity=None if cloud.intensity is None else cells.mean(cloud.intensity),
         normals=None if cloud.normals is None else _of_length_one(cells.mean(cloud.normals)),
+        counts=cells.counts,
     )
 
 
@@ -95,6 +112,42 @@ def local(cloud: Cloud, neighbors: int) -> Local:
 def normals(cloud: Cloud, neighbors: int) -> Array:
     """Unit normals (N, 3); zero where there is none."""
     return local(cloud, neighbors).normals
+
+
+@lru_cache(maxsize=32)
+def around(cloud: Cloud, row: int, neighbors: int) -> clouds.Neighbourhood:
+    """The nearest points of one of a cloud, of its own scan; `rows` are those of the whole cloud."""
+    rows = next(rows for rows in parts(cloud) if rows[0] <= row <= rows[-1])
+    found = clouds.neighbourhood(cloud.points[rows], row - int(rows[0]), neighbors)
+    return replace(found, rows=rows[found.rows])
+
+
+@lru_cache(maxsize=8)
+def _light(cloud: Cloud) -> Array:
+    """How bright (N,) each point of a cloud is in a light from above, by the direction of the surface about it.
+
+    All points of a cell have one brightness: normals of so few are found in a tenth of the time.
+    """
+    low, high = clouds.bounds(cloud.points)
+    size = float((high - low).max()) / 250.0 or 1.0
+    while len(coarse := thinned(cloud, size)) > LIT:
+        size *= 1.05 * math.sqrt(len(coarse) / LIT)
+    bright = DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * normals(coarse, 16) @ TO_LIGHT)
+    found, before = np.empty(len(cloud)), 0
+    for rows, cells in zip(parts(cloud), cells_of(cloud, size), strict=True):
+        found[rows] = bright[before + cells.labels]
+        before += len(cells.points)
+    return found
+
+
+@lru_cache(maxsize=16)
+def light(cloud: Cloud, thin: Cloud, size: float) -> Array:
+    """The same of its points thinned to cells of edge `size`: the mean brightness, without new normals."""
+    each = _light(cloud) if len(cloud) else np.empty(0)
+    if thin is cloud:
+        return each
+    cells = zip(parts(cloud), cells_of(cloud, size), strict=True)
+    return np.concatenate([grid.mean(each[rows]) for rows, grid in cells])
 
 
 @lru_cache(maxsize=32)
@@ -163,12 +216,27 @@ def colored_by(cloud: Cloud, color: str) -> str:
     return "height" if missing else color
 
 
+@dataclass(frozen=True)
+class Look:
+    """What the colours of points follow from: `neighbors` is 0 where they don't matter, and so is `voxel`.
+
+    `voxel` is the edge of the cells that they were thinned to.
+    """
+
+    color: str = ""
+    neighbors: int = 0
+    shaded: bool = False
+    voxel: float = 0.0
+
+
 @lru_cache(maxsize=16)
-def painted(cloud: Cloud, thin: Cloud, color: str, neighbors: int) -> Colors:
+def painted(cloud: Cloud, thin: Cloud, look: Look) -> Colors:
     """Colours (N, 3) of the thinned points, as they are sent; the spans are those of the whole cloud."""
-    kind = colored_by(cloud, color)
+    kind = colored_by(cloud, look.color)
     if kind == "normals":
-        return colors.of_directions(normals(thin, neighbors))
+        return colors.of_directions(normals(thin, look.neighbors))
+    bright = light(cloud, thin, look.voxel) if look.shaded and kind in SHADED else None
     if kind == "rgb" and thin.colors is not None:
-        return colors.of_rgb(thin.colors)
-    return colors.of_values(measured(thin, thin, kind, neighbors), span(cloud, thin, kind, neighbors), kind)
+        return colors.of_rgb(colors.darkened(thin.colors, bright))
+    values, ends = measured(thin, thin, kind, look.neighbors), span(cloud, thin, kind, look.neighbors)
+    return colors.of_values(values, ends, kind, bright)

@@ -16,10 +16,13 @@ from sims.kit.palette import LIGHT, rgb
 from sims.kit.sim import View
 from sims.point_cloud import colors, processes
 from sims.point_cloud.cloud import Cloud, Colors
-from sims.point_cloud.derived import Tally, normals, painted, parts
+from sims.point_cloud.derived import Look, Tally, cells_of, normals, painted, parts
+from sims.point_cloud.surface import Surface
 
 MOST_ARROWS = 1_200
 """Normals that are drawn: one in each cell of a grid that is as fine as that allows."""
+GHOSTS = 20_000
+"""Points of the original that are drawn behind what it was thinned to, at most."""
 ARROW = 0.8
 """Their length, of how far they are apart."""
 FEW = 0.05
@@ -50,7 +53,7 @@ class Drawn:
     """How long the normals are drawn, in metres."""
     ground: Array | None
     """Corners (4, 3) of the piece of the plane that is drawn."""
-    mesh: processes.Surface | None
+    mesh: Surface | None
     names: list[tuple[str, Array]]
     """Words at places: the largest clusters."""
     view: View
@@ -59,6 +62,12 @@ class Drawn:
     """All of it, before anything was done."""
     tally: Tally | None
     """What the colour bar says."""
+    ghost: Floats | None
+    """Points as they were measured, beside what they were thinned to."""
+    cells: Cells | None
+    """About the selected point of a thinned cloud."""
+    grip: Array | None
+    """Where the second scan is held, before it is registered."""
 
 
 NOTHING = np.empty(0, np.intp)
@@ -66,7 +75,7 @@ NO_ARROWS = np.empty((0, 2, 3))
 
 
 @lru_cache(maxsize=16)
-def layer(cloud: Cloud, thin: Cloud, color: str, neighbors: int, kind: str, mark: str, result: object) -> Layer:
+def layer(cloud: Cloud, thin: Cloud, look: Look, kind: str, mark: str, result: object) -> Layer:
     """One of the two layers; `kind` says which points, `mark` their colour, where it isn't that of the state."""
     rows = _rows(thin, kind, result)
     if mark == "clusters" and isinstance(result, processes.Clusters):
@@ -76,7 +85,7 @@ def layer(cloud: Cloud, thin: Cloud, color: str, neighbors: int, kind: str, mark
             MARKS.get(mark, colors.GREY), None if thin.colors is None else thin.colors[rows], len(rows)
         )
     else:
-        paint = painted(cloud, thin, color, neighbors)[rows]
+        paint = painted(cloud, thin, look)[rows]
     return Layer(rows, _places(thin)[rows], paint)
 
 
@@ -104,7 +113,44 @@ def _rows(thin: Cloud, kind: str, result: object) -> Indices:
 
 def nothing(cloud: Cloud, thin: Cloud) -> Layer:
     """A layer without points."""
-    return layer(cloud, thin, "", 0, "nothing", "ground", None)
+    return layer(cloud, thin, Look(), "nothing", "ground", None)
+
+
+@lru_cache(maxsize=8)
+def ghost(cloud: Cloud) -> Floats:
+    """Some of a cloud's points as they were measured, evenly chosen: few enough to be sent and drawn beside others."""
+    rows = np.linspace(0, len(cloud) - 1, min(GHOSTS, len(cloud))).astype(np.intp)
+    return cloud.points[rows].astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The edges (12, 2, 3) of a chosen point's cell, those (n, 2, 3) of cells near it, and the points in them."""
+
+    own: Array
+    near: Array
+    points: Floats
+
+
+@lru_cache(maxsize=8)
+def cells(cloud: Cloud, thin: Cloud, row: int, size: float) -> Cells:
+    """The cells about a thinned point, two in each direction, and what was measured in them."""
+    grids = zip(parts(cloud), parts(thin), cells_of(cloud, size), strict=True)
+    rows, thinned, grid = next(each for each in grids if row <= each[1][-1])
+    number = row - int(thinned[0])
+    places = np.floor((thin.points[thinned] - grid.origin) / size)
+    away = np.abs(places - places[number]).max(axis=1)
+    near = np.flatnonzero((away <= 2) & (away > 0))
+    edges = [boxed(low, low + size) for low in grid.origin + size * places[[number, *near]]]
+    measured = np.isin(grid.labels, [number, *near])
+    return Cells(edges[0], np.concatenate([NO_ARROWS, *edges[1:]]), cloud.points[rows[measured]].astype(np.float32))
+
+
+def boxed(low: Array, high: Array) -> Array:
+    """The twelve edges (12, 2, 3) of a box."""
+    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
+    pairs = [(k, k | 1 << axis) for k in range(8) for axis in range(3) if not k >> axis & 1]
+    return np.asarray(corners[np.array(pairs)])
 
 
 @lru_cache(maxsize=16)
@@ -148,6 +194,13 @@ def patch(found: processes.Ground, low: Array, high: Array) -> Array:
     a, b, c = found.normal.tolist()
     corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
     return np.array([(x, y, -(a * x + b * y + found.offset) / c) for x, y in corners])
+
+
+def plane_of(near: clouds.Neighbourhood) -> Array:
+    """Corners (4, 3) of a piece of the plane through some neighbours: of evenly spread ones it has about their size."""
+    _, along, across = near.axes * (2.0 * np.sqrt(near.eigenvalues))[:, None]
+    corners = [-along - across, along - across, along + across, across - along]
+    return np.asarray(near.center + np.array(corners))
 
 
 @lru_cache(maxsize=16)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from sims.kit.offers import Offers
@@ -14,6 +14,10 @@ from sims.point_cloud.layers import whole
 from sims.point_cloud.library import NO_FILES, NOTHING, Library
 from sims.point_cloud.params import LONGEST, MOST_COLUMNS, REACH, CloudParams
 from sims.point_cloud.solution import CloudSolution
+
+FILES = ("file", "second")
+MEANS_NOTHING = {"register": ("method", "shift", "turn"), "outliers": ("deviations",)}
+"""Parameters that mean something in one process alone."""
 
 
 class CloudOffers(Offers[CloudParams]):
@@ -30,10 +34,35 @@ class CloudOffers(Offers[CloudParams]):
         self._last = course.steps if course and params.process == "register" else None
 
     def form(self) -> tuple[Any, ...]:
-        return *super().form(), self._last, self._cloud, self._guess
+        return *super().form(), self.params.voxel_size > 0.0, self._last, self._cloud, self._guess
+
+    def idle(self) -> Collection[str]:
+        """What means nothing without a process, without two scans, without voxels or without a file."""
+        p = self.params
+        idle = {name for process, names in MEANS_NOTHING.items() if p.process != process for name in names}
+        if p.process == "none" or (p.process == "register" and not self._two):
+            idle |= {"step", "play"}
+        if p.process == "register" and self._two:
+            idle |= {"color"}
+        if p.process in ("none", "outliers"):
+            idle |= {"distance"}
+        if p.process != "none":
+            idle |= {"grow", "show_original"}
+        if p.voxel_size == 0.0:
+            idle |= {"show_original"}
+        if not p.measure:
+            idle |= {"other"}
+        if p.dataset != "file":
+            idle |= {"units", "columns", "second"}
+        return idle
+
+    @property
+    def _two(self) -> bool:
+        """Whether there are two scans to register."""
+        return self.params.dataset == "two-scans" or (self.params.dataset == "file" and self.params.second is not None)
 
     def options(self, name: str) -> Mapping[Any, str]:
-        return self._library.offered(self.params.file) if name == "file" else super().options(name)
+        return self._library.offered(getattr(self.params, name)) if name in FILES else super().options(name)
 
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "step" and self._last is not None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from sims.kit.palette import RGB, rgb
@@ -18,10 +19,12 @@ from sims.point_cloud.cloud import Colors
 from sims.point_cloud.derived import BINS, Tally
 from sims.point_cloud.layers import MARKS
 from sims.point_cloud.params import CloudParams
+from sims.point_cloud.selected import Selected
 from sims.point_cloud.solution import CloudSolution
 
 WIDTH, HEIGHT, LEFT, END, FLOOR, TOP = 320, 112, 10, 310, 84, 8
 NAMES = {"height": "Height", "intensity": "Intensity", "variation": "Surface variation"}
+ITSELF, OTHERS = 'r="5" class="s3-core"', 'r="3" style="fill:var(--ink)"'
 UNITS = {"height": "m", "intensity": "", "variation": ""}
 
 
@@ -30,7 +33,8 @@ def panes(_: CloudParams, s: CloudSolution) -> list[Pane]:
     if not s.points_in:
         return []
     more = [marked(s)] if len(s.drawn.marked.rows) and (s.ground or s.outliers) else []
-    return [legend(s), *([errors(s)] if s.registration is not None else more)]
+    near = [] if s.selected is None else [section(s.selected)]
+    return [legend(s), *([errors(s)] if s.registration is not None else more), *near]
 
 
 def legend(s: CloudSolution) -> Pane:
@@ -114,6 +118,21 @@ def _pane(title: str, note: str, inside: str, height: int) -> Pane:
     return Pane("colours", title, svg, note, wide=True)
 
 
+def section(chosen: Selected) -> Pane:
+    """The selected point's nearest ones from the side, on the plane that is fitted to them; one scale both ways."""
+    wide, thick = np.maximum(np.abs(chosen.section).max(axis=0), 1e-9).tolist()
+    middle, level = (LEFT + END) / 2.0, HEIGHT / 2.0
+    scale = min(0.95 * (END - middle) / wide, 0.85 * level / thick)
+    dots = "".join(
+        f'<circle cx="{middle + scale * x:.1f}" cy="{level - scale * y:.1f}" {OTHERS if k else ITSELF}/>'
+        for k, (x, y) in enumerate(chosen.section.tolist())
+    )
+    plane = f'<path d="M{LEFT} {level}H{END}" class="s3-ghost"/><text x="{LEFT}" y="{level - 6}">plane</text>'
+    note = f"{quantity(1000.0 * float(np.sqrt(chosen.eigenvalues[0])), 'mm', 1)} thick"
+    pane = _pane("Its neighbours from the side", note, plane + dots, HEIGHT)
+    return replace(pane, name="section")
+
+
 def errors(s: CloudSolution) -> Pane:
     """Root mean square distance of the pairs at each step of ICP."""
     found = s.registration
@@ -125,4 +144,6 @@ def errors(s: CloudSolution) -> Pane:
     )  # fmt: skip
     plot.curve([(float(k), v) for k, v in enumerate(rmses)], "")
     now = rmses[found.step]
-    return plot.pane(f"{quantity(now, 'mm', 1)} at step {found.step}", (float(found.step), now))
+    narrow = next((k for k, reach in enumerate(found.reaches) if reach < found.reaches[0]), None)
+    finer = "" if narrow is None else f"; finer from {narrow}"
+    return plot.pane(f"{quantity(now, 'mm', 1)} at step {found.step}{finer}", (float(found.step), now))

@@ -7,12 +7,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
 
-from sims.kit.fields import Choice, Letters, NumberBox, Slider, Switch, Text
-from sims.kit.params import Params
+from sims.kit.fields import Choice, Letters, NumberBox, Slider, Switch, Text, Vector
+from sims.kit.params import Params, with_entries
 from sims.kit.sim import View
 from sims.kit.spelling import spell
 from sims.point_cloud.files.meaning import ROLES, letters_of
-from sims.point_cloud.processes import LAST, MOST_STEPS
+from sims.point_cloud.processes import LAST
+from sims.point_cloud.registration import MOST_STEPS
 
 MOST_POINTS = 10_000_000
 VIEWS = {
@@ -33,7 +34,10 @@ MOST_COLUMNS = 12
 REACH = {"voxel_size": 1.0, "distance": 2.0}
 """Greatest lengths of the built-in clouds, in metres; those of a file follow from its size."""
 LONGEST = 100_000.0
-KEEPS_POINTS = {"color", "point_size", "show_normals", "show_box", "selected"}
+KEEPS_POINTS = {
+    "color", "point_size", "show_normals", "show_box", "show_original", "shading", "selected", "measure", "other",
+    "shift", "turn",
+}  # fmt: skip
 """Parameters that leave every shown point its index."""
 WHAT_DISTANCE_IS = {
     "none": "Distance of the process",
@@ -43,6 +47,15 @@ WHAT_DISTANCE_IS = {
     "register": "Reach of the pairs",
     "surface": "Radius of the ball",
 }
+
+
+STARTS = {"shift", "turn"}
+"""Parameters of where a registration begins."""
+
+
+def first_color(dataset: Any) -> str:
+    """What a cloud is coloured by when nobody says what: the street has no measured colours."""
+    return "height" if dataset == "street" else "rgb"
 
 
 def first_step(process: Any) -> int:
@@ -82,7 +95,7 @@ class CloudParams(Params):
             },
         ),
     ] = "rgb"
-    """What the colour of each point says"""
+    """What the colour of each point says. At first the measured colour; the street has none, and is shown by height"""
     point_size: Annotated[float, Slider(0.5, 10.0, step=0.5, title="Point size", group=LOOK)] = 2.0
     """About in pixels, as the sim opens"""
     voxel_size: Annotated[float, Slider(0.0, LONGEST, step=0.005, unit="m", title="Voxel size")] = 0.0
@@ -93,8 +106,16 @@ class CloudParams(Params):
     """How many nearest points, itself included, a normal and an outlier are judged by"""
     show_box: Annotated[bool, Switch(title="Bounding box", group=LOOK)] = True
     """The box along the axes that all points are in"""
+    show_original: Annotated[bool, Switch(title="Original behind voxels", group=LOOK)] = True
+    """Some of the points as they were measured, small and grey, behind what they were thinned to"""
+    shading: Annotated[bool, Switch(title="Shading", group=LOOK)] = True
+    """Surfaces that face away from a light above are darker, where points are coloured by height or as measured"""
     selected: Annotated[int | None, NumberBox(0, MOST_POINTS - 1, step=1, title="Selected point", group=CHOSEN)] = None
     """Click a point, or type its number; empty for none"""
+    measure: Annotated[bool, Switch(title="Measure from it", group=CHOSEN)] = False
+    """While it is on, a click says how far another point is from the selected one"""
+    other: Annotated[int | None, NumberBox(0, MOST_POINTS - 1, step=1, title="Measure to point", group=CHOSEN)] = None
+    """Click a point, or type its number"""
     process: Annotated[
         Literal["none", "ground", "clusters", "outliers", "register", "surface"],
         Choice(
@@ -130,6 +151,15 @@ class CloudParams(Params):
         float, Slider(0.5, 4.0, step=0.1, title="Deviations of an outlier", group="Settings of the process")
     ] = 2.0
     """Outliers are this many standard deviations farther from their neighbours than is usual"""
+    shift: Annotated[
+        tuple[float, float, float],
+        Vector(-1000.0, 1000.0, step=0.05, unit="m", title="Second scan begins at", group="Settings of the process"),
+    ] = (0.0, 0.0, 0.0)
+    """How far the second scan is moved before ICP: drag it in the scene. From too far away ICP fails"""
+    turn: Annotated[
+        float, Slider(-180.0, 180.0, step=1, unit="°", title="And is turned by", group="Settings of the process")
+    ] = 0.0
+    """About the upright through its middle, before ICP"""
 
     file: Annotated[
         str | None, Text(title="File", pattern=NAME, format="the name of a file, without a path", group=OWN)
@@ -163,18 +193,26 @@ class CloudParams(Params):
         ),
     ] = ""
     """What each column of the file is taken for; of one for which nothing is chosen, it is guessed"""
+    second: Annotated[
+        str | None, Text(title="Second scan", pattern=NAME, format="the name of a file, without a path", group=OWN)
+    ] = None
+    """A file to register to the first. While you register, a file that you bring becomes the second scan"""
 
     @model_validator(mode="before")
     @classmethod
     def _begun(cls, values: Any) -> Any:
-        """Without a step, a registration is at its start; every other process is at its result."""
-        if isinstance(values, Mapping) and "step" not in values:
-            return {**values, "step": first_step(values.get("process"))}
-        return values
+        """Without a step, a registration is at its start, every other process at its result; so with colours."""
+        if not isinstance(values, Mapping):
+            return values
+        return {"step": first_step(values.get("process")), "color": first_color(values.get("dataset")), **values}
 
     def query_items(self) -> dict[str, str]:
-        items = {name: text for name, text in super().query_items().items() if name != "step"}
-        return items if self.step == first_step(self.process) else {**items, "step": spell(self.step)}
+        items = super().query_items()
+        for name, first in (("step", first_step(self.process)), ("color", first_color(self.dataset))):
+            items.pop(name, None)
+            if (value := getattr(self, name)) != first:
+                items[name] = spell(value)
+        return items
 
     @property
     def choice(self) -> Chosen:
@@ -199,25 +237,39 @@ class CloudParams(Params):
 
     def moved(self, changes: Mapping[str, Any]) -> Self:
         """What `changed` does; no step is beyond the last, and a point that may be another is let go."""
-        now = self._with_step(changes)
+        now = self._begun_anew(self._of_files(with_entries(changes, self.__dict__.__getitem__)))
         turned = {name for name, value in now.items() if value != getattr(self, name)}
-        if "file" in turned and now["file"]:
-            now.setdefault("dataset", "file")
-        if "file" in turned:
-            now = {"columns": "", "units": "auto", **now}
+        if turned & STARTS and self.process == "register":
+            now.setdefault("step", 0)
         if "step" in now and now.get("process", self.process) != "register":
             now["step"] = min(now["step"], LAST)
-        if self.selected is not None and self._renumbers(turned):
-            now.setdefault("selected", None)
+        if (self.selected, self.other) != (None, None) and self._renumbers(turned):
+            now = {"selected": None, "other": None, **now}
         return super().moved(now)
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
-        """A process begins at its result, a registration at its start."""
-        return super().changed(self._with_step(changes))
+        """A process begins at its result, a registration at its start; a cloud in the colours that it has."""
+        return super().changed(self._begun_anew(changes))
 
-    def _with_step(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        turned = changes.get("process", self.process) != self.process
-        return {**({"step": first_step(changes["process"])} if turned else {}), **changes}
+    def _begun_anew(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        now = dict(changes)
+        process, dataset = now.get("process", self.process), now.get("dataset", self.dataset)
+        if process != self.process:
+            now.setdefault("step", first_step(process))
+        if dataset != self.dataset and self.color == first_color(self.dataset):
+            now.setdefault("color", first_color(dataset))
+        return now
+
+    def _of_files(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Whoever chooses a file sees it; one that is brought while another is registered is its second scan."""
+        now = dict(changes)
+        file = now.get("file", self.file)
+        if file == self.file:
+            return {"process": "register", **now} if now.get("second", self.second) not in (None, self.second) else now
+        registers = self.process == "register" and self.dataset == "file" and self.file is not None
+        if registers and file is not None and file.startswith(UPLOAD):
+            return {"second": file}
+        return {"columns": "", "units": "auto", **({"dataset": "file"} if file else {}), "second": None, **now}
 
     def _renumbers(self, turned: set[str]) -> bool:
         others = turned - KEEPS_POINTS

@@ -8,27 +8,21 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry import GeometryError, clouds, se3
+from geometry import GeometryError, clouds
 from geometry.arrays import Array
 from geometry.clouds import Indices
 from sims.kit.progress import begins, goes_on
 from sims.kit.sim import DRAWN
 from sims.point_cloud.cloud import Cloud
-from sims.point_cloud.derived import normals, parts, spacing
+from sims.point_cloud.derived import spacing
 
 UP = np.array([0.0, 0.0, 1.0])
 STEEPEST = math.radians(20.0)
 LEAST_GROUND = 0.2
 """Share of the points that must be on the ground before clusters are looked for without it."""
 LEAST_CLUSTER = 30
-MOST_STEPS = 40
-"""Last step of a registration, at most."""
 LAST = 2
 """Last step of every other process: nothing, found, done."""
-PAIRED = 12_000
-"""Points of the second scan, about, that take part in a registration."""
-MESHED = 8_000
-"""Points of a surface, about: an alpha shape takes its time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,46 +55,6 @@ class Outliers:
     removed: int
     threshold: float
     off: Indices = field(metadata=DRAWN)
-
-
-@dataclass(frozen=True, eq=False)
-class Registered:
-    """ICP at one of its steps: `T` (4, 4) brings the second scan onto the first.
-
-    `error` is Σ‖R pᵢ + t − qᵢ‖² in m² over the pairs, `rmse` in metres, by iteration as well. `off` is how far in
-    metres a corner of the box is at most from its true place, null where that isn't known. `unobservable` are
-    directions of motion (rotation times lever, translation) that the pairs don't fix.
-    """
-
-    step: int
-    steps: int
-    T: Array
-    error: float
-    fitness: float
-    rmse: float | None
-    pairs: int
-    converged: bool
-    off: float | None
-    unobservable: Array
-    errors: list[float]
-    fitnesses: list[float]
-    rmses: list[float]
-    reach: float
-    links: Array = field(metadata=DRAWN)
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """An alpha shape: triangles, area in m², and the volume in m³ of what is closed."""
-
-    triangles: int
-    area: float
-    volume: float
-    radius: float
-    cell: float
-    points: int
-    vertices: Array = field(metadata=DRAWN)
-    faces: Indices = field(metadata=DRAWN)
 
 
 @lru_cache(maxsize=16)
@@ -140,104 +94,3 @@ def outliers(thin: Cloud, neighbors: int, deviations: float) -> Outliers:
     found = clouds.outliers(thin.points, neighbors, deviations, progress=goes_on)
     off = np.flatnonzero(~found.keep)
     return Outliers(len(off), found.threshold, off)
-
-
-@dataclass(frozen=True, eq=False)
-class Course:
-    """All steps of a registration, and which points of the second scan took part."""
-
-    steps: tuple[clouds.Step, ...]
-    source: Array
-    target: Array
-    converged: bool
-    unobservable: Array
-    reach: float
-
-
-@lru_cache(maxsize=8)
-def course(cloud: Cloud, thin: Cloud, method: str, neighbors: int, distance: float) -> Course | None:
-    """ICP of the second scan to the first: pairs within a wide reach, then within a narrow one. None for one scan."""
-    rows = list(parts(thin))
-    if len(rows) < 2 or min(map(len, rows)) < 10:
-        return None
-    target = clouds.Target(thin.points[rows[0]], normals(thin, neighbors)[rows[0]])
-    source = thin.points[rows[1]][:: max(1, len(rows[1]) // PAIRED)]
-    reaches = (distance,) if distance else (18.0 * spacing(cloud), 3.0 * max(spacing(cloud), spacing(thin)))
-    begins("Registering the scans")
-    steps: list[clouds.Step] = []
-    converged = False
-    for reach in reaches:
-        start = steps[-1].T_target_source if steps else np.eye(4)
-        left = MOST_STEPS + 1 - len(steps)
-        for k, step in enumerate(clouds.icp(source, target, reach, method=method, start=start, most=left)):
-            goes_on(len(steps) / MOST_STEPS)
-            if k or not steps:
-                steps.append(step)
-            converged = k < left
-    steps = steps[: MOST_STEPS + 1]
-    known = clouds.certainty(target, source, steps[-1], method)
-    unobservable = np.empty((0, 6)) if known is None else known.unobservable()
-    return Course(
-        tuple(steps), source, target.points, converged and len(steps) <= MOST_STEPS, unobservable, reaches[-1]
-    )
-
-
-def registered(cloud: Cloud, course: Course, number: int) -> Registered:
-    """The state at a step; beyond the last one, the last."""
-    number = min(number, len(course.steps) - 1)
-    step = course.steps[number]
-    paired = np.flatnonzero(step.target >= 0)
-    shown = paired[:: max(1, len(paired) // 300)]
-    links = np.stack([se3.apply(step.T_target_source, course.source[shown]), course.target[step.target[shown]]], axis=1)
-    return Registered(
-        step=number, steps=len(course.steps) - 1, T=step.T_target_source, error=step.error, fitness=step.fitness,
-        rmse=_or_none(step.rmse), pairs=len(paired), converged=course.converged, off=_off(cloud, step.T_target_source),
-        unobservable=course.unobservable, errors=[s.error for s in course.steps],
-        fitnesses=[s.fitness for s in course.steps],
-        rmses=[s.rmse if math.isfinite(s.rmse) else 0.0 for s in course.steps], reach=course.reach, links=links,
-    )  # fmt: skip
-
-
-def _or_none(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
-def _off(cloud: Cloud, T: Array) -> float | None:
-    if cloud.truth is None:
-        return None
-    low, high = clouds.bounds(cloud.points)
-    corners = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
-    return float(np.linalg.norm(se3.apply(T, corners) - se3.apply(cloud.truth, corners), axis=1).max())
-
-
-def _meshed(points: Array, cell: float) -> Array:
-    """Means of the cells that more than two points are in: a lone one is likelier noise."""
-    cells = clouds.voxels(points, cell)
-    return cells.points[cells.counts > 2]
-
-
-@lru_cache(maxsize=8)
-def surface(thin: Cloud, voxel: float, distance: float) -> Surface | None:
-    """The alpha shape of one point a cell, with cells large enough that it doesn't take long; None if all is flat."""
-    if not len(thin):
-        return None
-    begins("Rolling a ball over the points")
-    low, high = clouds.bounds(thin.points)
-    cell = max(voxel, float((high - low).max()) / 90.0)
-    if not cell > 0.0:
-        return None
-    points = _meshed(thin.points, cell) if cell > voxel else thin.points
-    while len(points) > MESHED:
-        cell *= 1.05 * math.sqrt(len(points) / MESHED)
-        points = _meshed(thin.points, cell)
-    if len(points) > 1:
-        points = points[clouds.outliers(points, 16, 1.5).keep]
-    goes_on()
-    radius = distance or 1.5 * cell
-    try:
-        shape = clouds.alpha_shape(points, radius)
-    except GeometryError:
-        return None
-    return Surface(
-        len(shape.triangles), shape.area, shape.volume, radius, cell, len(points), shape.points, shape.triangles
-    )

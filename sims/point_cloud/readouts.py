@@ -7,12 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from sims.kit.readout import THIN, Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
+from sims.point_cloud.captions import ASTRAY
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.meaning import IGNORED, ROLES
 from sims.point_cloud.library import NO_FILES, Library
 from sims.point_cloud.offers import guess
 from sims.point_cloud.params import CHOSEN, MOST_COLUMNS, OWN, UPLOAD, CloudParams
-from sims.point_cloud.processes import Registered
+from sims.point_cloud.registration import Registered
 from sims.point_cloud.solution import CloudSolution
 
 SENSORS = {
@@ -31,19 +32,6 @@ def count(number: int) -> str:
 BOX, RESULT, ORIGIN = "The box", "What the process found", "Where the points come from"
 
 
-def caption(p: CloudParams, s: CloudSolution) -> str:
-    """What to do, or what to see."""
-    if s.trouble:
-        return "This can’t be shown: see why below."
-    if s.registration is not None:
-        return "Each step pairs every point with its nearest, and moves the second scan to bring the pairs together."
-    if p.process != "none":
-        return f"Step {p.step} of the process: go on with “Next step”, or play it from the start."
-    if p.voxel_size > 0.0:
-        return "The points in each cell have become their mean: see how few keep the shape, and what is lost."
-    return "Thin the cloud with the voxel size, colour it, or click a point to read what is known of it."
-
-
 def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _warnings(p, s)
@@ -53,8 +41,13 @@ def readouts(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         else f", {figure(100.0 * s.points_out / s.points_in, 1)}{THIN}%"
     )
     yield Formula("Points shown, of " + count(s.points_in) + share, symbol("n"), f"<mn>{count(s.points_out)}</mn>")
+    if s.measured is not None:
+        yield Formula("Distance of the two points", symbol("d"), mathml(s.measured.distance), "m")
     yield Fold(CHOSEN)
     yield from _selected(s)
+    if s.measured is not None:
+        yield Formula(f"To point {count(s.measured.other)}, at", symbol("q"), row(s.measured.position.tolist()), "m")
+        yield Formula("Along x, y, z", symbol("q") + "<mo>−</mo>" + symbol("p"), row(s.measured.offset.tolist()), "m")
     yield Fold(RESULT)
     yield from _process(p, s)
     yield Fold(BOX)
@@ -113,15 +106,20 @@ def _warnings(p: CloudParams, s: CloudSolution) -> Iterator[Note]:
         return
     if s.colored_by != p.color and s.clusters is None and s.registration is None:
         what = "colours" if p.color == "rgb" else "intensities"
-        yield Note(f"This cloud has no {what}; height is shown instead.", "near")
-    if p.selected is not None and s.selected is None:
-        yield Note(f"No point has the number {count(p.selected)}: only {count(s.points_out)} are shown.", "warn")
+        yield Note(f"This cloud has no {what}; height is shown instead.")
+    for number, found in ((p.selected, s.selected), (p.other if p.measure and s.selected else None, s.measured)):
+        if number is not None and found is None:
+            yield Note(f"No point has the number {count(number)}: only {count(s.points_out)} are shown.", "warn")
     if p.process == "register" and s.registration is None:
-        yield Note("Nothing to register: this is one scan. Choose “Two scans of a court”.", "warn")
+        yield Note(ONE_FILE if p.dataset == "file" else "Nothing to register: this is one scan.", "warn")
     if p.process == "ground" and p.step > 0 and s.ground is None:
         yield Note("No ground: no plane within 20° of level.", "warn")
     if p.process == "surface" and p.step > 0 and (s.surface is None or not s.surface.triangles):
         yield Note("No surface: the ball falls through between the points. Choose a larger one.", "warn")
+
+
+ONE_FILE = f"One scan so far: bring the second under “{OWN}”. While you register, a file that you bring is that one."
+LAMBDAS = "<mo>+</mo>".join(symbol("λ", str(k)) for k in (1, 2, 3))
 
 
 def _facing(cloud: Cloud) -> str:
@@ -135,14 +133,24 @@ def _selected(s: CloudSolution) -> Iterator[Formula]:
     if (chosen := s.selected) is None:
         return
     yield Formula(f"Selected point, number {count(chosen.index)}", symbol("p"), row(chosen.position.tolist()), "m")
+    if chosen.merged is not None:
+        yield Formula("Measured points in its cell, whose mean it is", symbol("n"), f"<mn>{count(chosen.merged)}</mn>")
     if chosen.color is not None:
         yield Formula("Its colour: red, green, blue", symbol("c"), row(chosen.color.tolist(), 0))
     if chosen.normal is not None:
         yield Formula(f"Its normal, {_facing(s.drawn.cloud)}", symbol("n"), row(chosen.normal.tolist()))
     if chosen.intensity is not None:
         yield Formula("Its intensity", symbol("I"), mathml(chosen.intensity))
+    yield Formula(
+        f"Variances of its {len(chosen.neighbors)} nearest: across their plane, and along it",
+        symbol("λ"),
+        row((1e6 * chosen.eigenvalues).tolist(), 1),
+        "mm²",
+    )
     if chosen.variation is not None:
-        yield Formula("Its surface variation: 0 on a plane, at most 1/3", symbol("σ", "n"), mathml(chosen.variation, 4))
+        share = f"{symbol('λ', '1')}<mo>/</mo><mrow><mo>(</mo>{LAMBDAS}<mo>)</mo></mrow><mo>=</mo>"
+        note = "Its surface variation: 0 on a plane, at most 1/3"
+        yield Formula(note, symbol("σ", "n"), share + mathml(chosen.variation, 4))
 
 
 def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
@@ -174,15 +182,27 @@ def _process(p: CloudParams, s: CloudSolution) -> Iterator[Readout]:
         yield from _registration(s.registration)
     if s.surface is not None and s.surface.triangles:
         f = s.surface
-        yield Formula(f"Triangles, on {count(f.points)} points", symbol("n"), f"<mn>{count(f.triangles)}</mn>")
+        cells = f"{count(f.points)} means of cells of {quantity(f.cell, 'm', 3)}"
+        yield Formula(f"Triangles, on {cells}", symbol("n"), f"<mn>{count(f.triangles)}</mn>")
         yield Formula("Area", symbol("A"), mathml(f.area, 2), "m²")
-        yield Formula("Volume of what is closed", symbol("V"), mathml(f.volume), "m³")
-        yield Formula(f"Radius of the ball; cells of {quantity(f.cell, 'm', 3)}", symbol("α"), mathml(f.radius), "m")
+        yield Formula(
+            "Volume that the ball can’t get into; next to nothing where there is a gap",
+            symbol("V"),
+            mathml(f.volume),
+            "m³",
+        )
+        yield Formula("Radius of the ball", symbol("α"), mathml(f.radius), "m")
 
 
 def _registration(r: Registered) -> Iterator[Readout]:
     ended = ", converged" if r.converged else ", not yet converged"
     yield Note(f"Step {r.step} of {r.steps}{ended if r.step == r.steps else ''}.")
+    yield Note(
+        f"{count(r.source_points)} of the second scan’s {count(r.second_points)} points take part, which is enough."
+        f" {_reaches(r)}"
+    )
+    if r.off is not None and r.off > ASTRAY and r.step == r.steps and r.pairs:
+        yield Note("It ends in the wrong place. Begin nearer, or with a wider reach.", "near")
     yield Formula(f"Error of {count(r.pairs)} pairs, {SUM}", symbol("E"), mathml(r.error), "m²")
     yield Formula("Share of points with a pair (fitness)", symbol("f"), mathml(r.fitness))
     if r.rmse is not None:
@@ -193,6 +213,15 @@ def _registration(r: Registered) -> Iterator[Readout]:
     if len(r.unobservable):
         open_ways = ", ".join(map(_motion, r.unobservable))
         yield Note(f"The pairs don't fix {len(r.unobservable)} of 6 directions of motion: {open_ways}.", "near")
+
+
+def _reaches(r: Registered) -> str:
+    """From coarse to fine."""
+    wide, narrow = quantity(r.reaches[0], "m", 2), quantity(r.reaches[-1], "m", 2)
+    if wide == narrow:
+        return f"Pairs are at most {wide} apart."
+    first = next(k for k, reach in enumerate(r.reaches) if reach < r.reaches[0])
+    return f"From coarse to fine: pairs are at most {wide} apart, from step {first} on {narrow}."
 
 
 SUM = "Σ‖R pᵢ + t − qᵢ‖²"
@@ -221,6 +250,8 @@ def describe(p: CloudParams, s: CloudSolution) -> str:
     if s.selected is not None:
         a, b, c = (figure(v, 2) for v in s.selected.position.tolist())
         words += f"; point {count(s.selected.index)} at {a}, {b}, {c} m"
+    if s.measured is not None:
+        words += f", {quantity(s.measured.distance, 'm')} from point {count(s.measured.other)}"
     if s.registration is not None:
         words += f"; registration, step {s.registration.step} of {s.registration.steps}"
         if s.registration.rmse is not None:

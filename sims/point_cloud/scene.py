@@ -9,14 +9,17 @@ import trimesh
 
 from geometry import quaternion
 from geometry.arrays import Array
+from sims.kit.palette import before_film, rgb
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.nodes import Arrows, Cloud, Node
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import View
 from sims.kit.types import ORIGIN
-from sims.point_cloud.layers import Layer
+from sims.point_cloud.layers import Layer, boxed
 from sims.point_cloud.params import VIEWS, CloudParams
-from sims.point_cloud.solution import CloudSolution, Selected
+from sims.point_cloud.scene_selected import About
+from sims.point_cloud.selected import Selected
+from sims.point_cloud.solution import CloudSolution
 
 PIXELS = 350.0
 """Pixels, about, that the radius of the first view takes."""
@@ -29,6 +32,13 @@ SLENDER = 0.05
 """Radius of an arrow's shaft, of its length."""
 RING = 0.04
 """Radius of the ring round the selected point, of the view's."""
+GROWS = 0.22
+"""Diameter of a dot of size 1, of the edge of the cell that it is the mean of: thinned surfaces stay surfaces."""
+GHOST, PALE = 0.35, 0.6
+"""Size of the original's dots, of those that are as large as the cloud alone says; and how much they differ from the
+page."""
+HELD = 0.035
+"""Radius of the ball that the second scan is held by, of the view's."""
 
 
 class CloudScene:
@@ -44,8 +54,16 @@ class CloudScene:
         self.plane = Patch(stage)
         self.mesh = Mesh(stage)
         self.links = stage.lines("/pairs", "held", width=1.5)
+        self.about = About(stage)
+        self.ghost: Cloud = stage.cloud("/original", "ghost")
+        pale = PALE * np.array(rgb(stage.palette.ghost)) + (1.0 - PALE) * np.array(rgb(stage.palette.page))
+        self._pale = before_film(pale[None])
+        self._held = HELD * VIEWS["two-scans"].radius
+        self.grip = stage.grip("/second", self._held)
         self.names = [stage.label(f"/name{k}", "", anchor="bottom-center") for k in range(NAMES)]
         self._view: View | None = None
+        for node in (self.box.node, self.ring.node, self.plane.node, self.mesh.body, self.grip, *self.names):
+            node.show(False)  # until a cloud is there
         stage.rays("/cloud")
         for name in ("process", "step"):
             stage.linked(name, self.links, self.plane.rim)
@@ -58,7 +76,8 @@ class CloudScene:
         view = s.drawn.view
         if view is not self._view:
             self._turn_to(view, s)
-        size = p.point_size * view.radius / PIXELS
+        dot = p.point_size * view.radius / PIXELS
+        size = max(dot, p.point_size * GROWS * p.voxel_size)
         alone = s.surface is not None and p.step == 2
         self.base.draw(s.drawn.base, size, hidden=alone)
         self.marked.draw(s.drawn.marked, size if s.registration else MARKED * size)
@@ -67,6 +86,9 @@ class CloudScene:
         self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
         self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
         self.ring.draw(s.selected, view.radius)
+        self.about.draw(s, max(1.4 * dot, 0.5 * size), GHOST * dot)
+        self._original(s, GHOST * dot)
+        self.grip.place(s.drawn.grip)
         self.plane.draw(s.drawn.ground)
         self.mesh.draw(s)
         self._pairs(s)
@@ -76,10 +98,19 @@ class CloudScene:
         """Another cloud may be far larger: look at all of it, and lay the floor for it."""
         if self._view is not None or view not in VIEWS.values():  # the page begins with those views
             self.stage.look(view.position, view.look_at, view.radius)
+        if HELD * view.radius != self._held:  # what hangs on a ball isn't stretched with it
+            self._held = HELD * view.radius
+            self.grip = self.stage.grip("/second", self._held)
         self._view = view
         self.floor.scale(round(view.radius / 2.5) or 1.0)
         low = 0.0 if view in VIEWS.values() else s.minimum.item(2)
         self.floor.pose(position=(view.look_at[0], view.look_at[1], low - 0.01 * view.radius))
+
+    def _original(self, s: CloudSolution, size: float) -> None:
+        self.ghost.show(s.drawn.ghost is not None)
+        if s.drawn.ghost is not None:
+            self.ghost.size(size)
+            self.ghost.draw(s.drawn.ghost, np.broadcast_to(self._pale, s.drawn.ghost.shape))
 
     def _pairs(self, s: CloudSolution) -> None:
         links = None if s.registration is None else s.registration.links
@@ -129,19 +160,12 @@ class Box:
             label.show(visible)
         if not visible:
             return
-        self.edges.pieces(box_edges(low, high))
+        self.edges.pieces(boxed(low, high))
         middle = 0.5 * (low + high)
         places = (middle[0], low[1], low[2]), (high[0], middle[1], low[2]), (low[0], low[1], middle[2])
         for axis, label, place, length in zip("xyz", self.labels, places, (high - low).tolist(), strict=True):
             label.text(f"{axis} {quantity(length, 'm', 2)}")
             label.pose(position=place)
-
-
-def box_edges(low: Array, high: Array) -> Array:
-    """The twelve edges (12, 2, 3) of a box."""
-    corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
-    pairs = [(k, k | 1 << axis) for k in range(8) for axis in range(3) if not k >> axis & 1]
-    return np.asarray(corners[np.array(pairs)])
 
 
 class Ring:
@@ -178,14 +202,15 @@ class Patch:
     """The piece of the ground plane over the box."""
 
     def __init__(self, stage: Stage) -> None:
-        self.face = stage.sheet("/ground_plane", "held", opacity=0.28)
+        self.node = stage.group("/ground_plane")
+        self.face = stage.sheet("/ground_plane/face", "held", opacity=0.28)
         self.rim = stage.lines("/ground_plane/rim", "held", width=2.5)
         self.label = stage.label("/ground_plane/label", "ground")
 
     def draw(self, corners: Array | None) -> None:
-        self.face.vertices(corners)
-        self.label.show(corners is not None)
+        self.node.show(corners is not None)
         if corners is not None:
+            self.face.vertices(corners)
             self.rim.path(corners[[0, 1, 2, 3, 0]])
             self.label.pose(position=(0.5 * (corners[0] + corners[3])).tolist())
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,27 +11,18 @@ from geometry import clouds, se3
 from geometry.arrays import Array
 from sims.kit.progress import begins
 from sims.kit.sim import DRAWN
-from sims.point_cloud import layers, processes
+from sims.point_cloud import layers, processes, registration
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.datasets import dataset
-from sims.point_cloud.derived import LOCAL, colored_by, local, tally, thinned
-from sims.point_cloud.files import ply_bytes
+from sims.point_cloud.derived import LOCAL, SHADED, Look, colored_by, tally, thinned
 from sims.point_cloud.layers import NO_ARROWS, Drawn, Layer, layer
-from sims.point_cloud.library import NO_FILES, Library
+from sims.point_cloud.library import NO_FILES, NOTHING, Library
 from sims.point_cloud.params import VIEWS, CloudParams
-from sims.point_cloud.processes import Clusters, Ground, Outliers, Registered, Surface
-
-
-@dataclass(frozen=True, eq=False)
-class Selected:
-    """One point: what was measured there, and what its neighbours say: normal and surface variation, or null."""
-
-    index: int
-    position: Array
-    color: Array | None
-    normal: Array | None
-    intensity: float | None
-    variation: float | None
+from sims.point_cloud.processes import Clusters, Ground, Outliers
+from sims.point_cloud.registration import Registered
+from sims.point_cloud.result import Result
+from sims.point_cloud.selected import Measured, Selected, measured, place, selected
+from sims.point_cloud.surface import Surface, surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +53,7 @@ class CloudSolution:
     maximum: Array
     dimensions: Array
     selected: Selected | None
+    measured: Measured | None
     colored_by: str
     """What the colours say: the dataset may not have what was asked for."""
     source: Source | None
@@ -80,42 +72,50 @@ MOST_LABELS = 7
 
 
 def source(p: CloudParams, library: Library) -> Cloud:
-    """The cloud of a state."""
-    return library.find(p.file, p.choice) if p.dataset == "file" else dataset(p.dataset)
+    """The cloud of a state: of two files, one after the other."""
+    if p.dataset != "file":
+        return dataset(p.dataset)
+    first = library.find(p.file, p.choice)
+    second = library.find(p.second) if p.second else NOTHING
+    return _both(first, second) if len(first) and len(second) else first
 
 
-@dataclass
-class Result:
-    """What a process says, and which points it shows how."""
+@lru_cache(maxsize=4)
+def _both(first: Cloud, second: Cloud) -> Cloud:
+    return first.with_second(second)
 
-    base: Layer
-    marked: Layer
-    T: Array = field(default_factory=lambda: np.eye(4))
-    ground: processes.Ground | None = None
-    clusters: processes.Clusters | None = None
-    outliers: processes.Outliers | None = None
-    registration: processes.Registered | None = None
-    surface: processes.Surface | None = None
-    names: list[tuple[str, Array]] = field(default_factory=list)
+
+def trouble(p: CloudParams, library: Library) -> str:
+    """In words, why a file isn't shown; empty if it is."""
+    if p.dataset != "file":
+        return ""
+    return library.trouble(p.file, p.choice) or (library.trouble(p.second) if p.second else "")
 
 
 def solve(p: CloudParams, library: Library = NO_FILES) -> CloudSolution:
     """All that is shown of a state, on a server with those files."""
     begins("Fetching the cloud")
-    cloud = source(p, library)
-    thin = thinned(cloud, p.voxel_size)
-    result = PROCESSES[p.process](p, cloud, thin)
+    cloud, thin, result = processed(p, library)
     low, high = _extent(result)
+    chosen = selected(p, thin, result)
     return CloudSolution(
         points_in=len(cloud), points_out=len(result.base.rows) + len(result.marked.rows),
-        minimum=low, maximum=high, dimensions=high - low, selected=_selected(p, thin, result),
+        minimum=low, maximum=high, dimensions=high - low, selected=chosen,
+        measured=measured(p, thin, result, chosen),
         colored_by=colored_by(cloud, p.color),
         source=_source(cloud) if p.dataset == "file" and len(cloud) else None,
         ground=result.ground, clusters=result.clusters,
         outliers=result.outliers, registration=result.registration, surface=result.surface,
-        trouble=library.trouble(p.file, p.choice) if p.dataset == "file" else "",
+        trouble=trouble(p, library),
         drawn=_drawn(p, cloud, thin, result, low, high),
     )  # fmt: skip
+
+
+def processed(p: CloudParams, library: Library) -> tuple[Cloud, Cloud, Result]:
+    """The cloud of a state, its thinned points, and what the process makes of these."""
+    cloud = source(p, library)
+    thin = thinned(cloud, p.voxel_size)
+    return cloud, thin, PROCESSES[p.process](p, cloud, thin)
 
 
 def _source(cloud: Cloud) -> Source:
@@ -127,7 +127,8 @@ def _source(cloud: Cloud) -> Source:
 
 def plain(p: CloudParams, cloud: Cloud, thin: Cloud, kind: str = "all", result: object = None) -> Layer:
     """Points in the colours of the state."""
-    return layer(cloud, thin, p.color, _neighbors(p), kind, "", result)
+    shaded = p.shading and p.color in SHADED
+    return layer(cloud, thin, Look(p.color, _neighbors(p), shaded, p.voxel_size if shaded else 0.0), kind, "", result)
 
 
 def _neighbors(p: CloudParams) -> int:
@@ -137,7 +138,7 @@ def _neighbors(p: CloudParams) -> int:
 
 def marked(cloud: Cloud, thin: Cloud, kind: str, mark: str, result: object) -> Layer:
     """Points in a colour of their own, whatever that of the state is."""
-    return layer(cloud, thin, "", 0, kind, mark, result)
+    return layer(cloud, thin, Look(), kind, mark, result)
 
 
 def _none(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
@@ -187,12 +188,12 @@ def _register(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
     if course is None:
         return _none(p, cloud, thin)
     first, second = (marked(cloud, thin, kind, mark, None) for kind, mark in (("first", "fixed"), ("second", "moves")))
-    found = processes.registered(cloud, course, p.step)
+    found = registration.registered(cloud, course, p.step)
     return Result(first, second, found.T, registration=found)
 
 
-def _course(p: CloudParams, cloud: Cloud, thin: Cloud) -> processes.Course | None:
-    return processes.course(cloud, thin, p.method, p.facing, p.distance)
+def _course(p: CloudParams, cloud: Cloud, thin: Cloud) -> registration.Course | None:
+    return registration.course(cloud, thin, p.method, p.facing, p.distance, p.shift, p.turn)
 
 
 def last_step(p: CloudParams, library: Library) -> int:
@@ -207,7 +208,7 @@ def last_step(p: CloudParams, library: Library) -> int:
 def _surface(p: CloudParams, cloud: Cloud, thin: Cloud) -> Result:
     result = _none(p, cloud, thin)
     if p.step > 0:
-        result.surface = processes.surface(thin, p.voxel_size, p.distance)
+        result.surface = surface(thin, p.voxel_size, p.distance)
     return result
 
 
@@ -233,24 +234,6 @@ def _two(values: list[Array]) -> tuple[Array, Array]:
     return values[0], values[-1]
 
 
-def _selected(p: CloudParams, thin: Cloud, result: Result) -> Selected | None:
-    """The point of that number: those of the first layer come first."""
-    if p.selected is None or p.selected >= len(result.base.rows) + len(result.marked.rows):
-        return None
-    at = p.selected - len(result.base.rows)
-    row, T = (result.base.rows[p.selected], np.eye(4)) if at < 0 else (result.marked.rows[at], result.T)
-    near = local(thin, p.neighbors)
-    normal, variation = near.normals[row], float(near.variation[row])
-    return Selected(
-        index=p.selected,
-        position=se3.apply(T, thin.points[row]),
-        color=None if thin.colors is None else thin.colors[row],
-        normal=T[:3, :3] @ normal if normal.any() else None,
-        intensity=None if thin.intensity is None else float(thin.intensity[row]),
-        variation=None if math.isnan(variation) else variation,
-    )
-
-
 def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array, high: Array) -> Drawn:
     base, over, length = NO_ARROWS, NO_ARROWS, 1.0
     if p.show_normals:
@@ -261,29 +244,41 @@ def _drawn(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result, low: Array
         result.base, result.marked, result.T, base, over, length, ground, result.surface, result.names,
         VIEWS[p.dataset] if p.dataset in VIEWS else layers.whole(cloud), cloud,
         tally(cloud, thin, colored_by(cloud, p.color), _neighbors(p)),
+        layers.ghost(cloud) if p.voxel_size > 0.0 and p.show_original and p.process == "none" else None,
+        _cells(p, cloud, thin, result),
+        _grip(p, cloud, result),
     )  # fmt: skip
+
+
+def _cells(p: CloudParams, cloud: Cloud, thin: Cloud, result: Result) -> layers.Cells | None:
+    """Those about the selected point, where it is drawn where it was measured."""
+    found = place(result, p.selected)
+    if found is None or p.voxel_size == 0.0 or p.process != "none":
+        return None
+    return layers.cells(cloud, thin, found[0], p.voxel_size)
+
+
+def _grip(p: CloudParams, cloud: Cloud, result: Result) -> Array | None:
+    """The second scan can be moved as long as ICP hasn't."""
+    if result.registration is None or result.registration.step > 0:
+        return None
+    return np.asarray(registration.hold(cloud) + p.shift)
 
 
 def shown_points(p: CloudParams, library: Library = NO_FILES) -> Cloud:
     """The points that a state shows, in the order of their numbers, where they are shown."""
-    cloud = source(p, library)
-    thin = thinned(cloud, p.voxel_size)
-    result = PROCESSES[p.process](p, cloud, thin)
+    _, thin, result = processed(p, library)
+    return shown(thin, result)
+
+
+def shown(thin: Cloud, result: Result) -> Cloud:
+    """The thinned points that a process shows."""
     kept = thin.only(np.concatenate([result.base.rows, result.marked.rows]))
     if result.registration is None:
         return kept
-    first = len(result.base.rows)
-    moved = se3.apply(result.T, kept.points[first:])
-    turned = (
-        None
-        if kept.normals is None
-        else np.concatenate([kept.normals[:first], kept.normals[first:] @ result.T[:3, :3].T])
-    )
-    return kept.with_means(np.concatenate([kept.points[:first], moved]), kept.colors, kept.intensity, turned)
-
-
-def ply(p: CloudParams, library: Library = NO_FILES) -> bytes:
-    """The shown points as a PLY file, where the file that they came from has them."""
-    kept = shown_points(p, library)
-    back = kept.points if kept.origin is None else kept.points + kept.origin
-    return ply_bytes(kept.with_means(back, kept.colors, kept.intensity, kept.normals))
+    first, T = len(result.base.rows), result.T
+    points, turned = kept.points.copy(), kept.normals
+    points[first:] = se3.apply(T, points[first:])
+    if turned is not None:
+        turned = np.concatenate([turned[:first], turned[first:] @ T[:3, :3].T])
+    return replace(kept, points=points, normals=turned)

@@ -1,15 +1,17 @@
 """quaternion: a turn about an axis as four numbers, how turns compose, and paths between two orientations.
 
 An aircraft (nose +X, left wing +Y, top +Z) stands at a start and is turned by an angle about an axis: its target
-is q ⊗ start. Between the two it goes by SLERP, NLERP or Euler angles.
+is q ⊗ start. Half of the angle is what q holds. More comes with each fold: all turns as a ball, a point that q turns,
+two turns in both orders, and the ways from start to target by SLERP, NLERP and Euler angles.
 """
 
 from __future__ import annotations
 
 from sims.kit.sim import Action, Contract, Objective, Sim
-from sims.quaternion import actions
-from sims.quaternion.panes import VIEW, panes
-from sims.quaternion.params import COMPOSED, MATRIX, PATH, SANDWICH, QuaternionParams
+from sims.quaternion import actions, ball, dial
+from sims.quaternion.offers import QuaternionOffers
+from sims.quaternion.panes import panes
+from sims.quaternion.params import BALL, COMPOSED, MATRIX, ORDER, PATH, SANDWICH, QuaternionParams
 from sims.quaternion.readouts import caption, describe, readouts
 from sims.quaternion.scene import QuaternionScene
 from sims.quaternion.solution import QuaternionSolution, solve
@@ -34,25 +36,37 @@ SIM = Sim(
     scene=QuaternionScene,
     caption=caption,
     readouts=readouts,
-    folds=(PATH, COMPOSED, SANDWICH, MATRIX,),
+    folds=(BALL, SANDWICH, ORDER, PATH, COMPOSED, MATRIX),
     describe=describe,
-    view=VIEW,
+    view=ball.VIEW,
     panes=panes,
+    offers=QuaternionOffers,
     actions=(
-        Action("apply", "Apply rotation", "Go to the target, which becomes the start of the next turn", actions.apply),
         Action(
-            "compose", "Compose with previous", "start = q ⊗ start, at once; axis and angle stay", actions.compose,
-            COMPOSED,
+            "apply", "Make this turn", "Turn by θ about n: where that leads is the start of the next turn, q ⊗ start",
+            actions.apply, aliases=("compose",),
         ),
+        Action("play", "Play", "See what is shown happen, from the start on; nothing comes of it", actions.play),
         Action("undo", "Undo last turn", "Take back the last turn made", actions.undo, COMPOSED),
-        Action("play", "Play interpolation", "Go from start to target, t from 0 to 1", actions.play),
     ),
-    handles={"/tip": actions.hold_tip, "/point": actions.hold_point},
+    handles={
+        "/tip": actions.hold_tip, "/point": actions.hold_point, "t": actions.hold_t,
+        "theta": dial.hold_theta, "half": dial.hold_half, "q": ball.hold_q, "minus_q": ball.hold_minus_q,
+    },
     states={
         "no turn": {"angle": 0},
         "half turn": {"axis": (1, 1, 0), "angle": 180},
         "whole turn": {"axis": (1, 1, 1), "angle": 360, "t": 0.5},
         "minus q": {"axis": (0, 0, -1), "angle": 300},
+        "second round": {"axis": (0, 1, 1), "angle": 450},
+        "two whole turns": {"angle": 720},
+        "ball": {"show": "ball", "axis": (1, 0.5, 1), "angle": 140},
+        "ball at infinity": {"show": "ball", "angle": 360},
+        "ball, start turned": {"show": "ball", "start": (HALF, HALF, 0, 0), "angle": 100, "t": 0.5},
+        "point": {"show": "point", "axis": (1, 1, 1), "angle": 120},
+        "both orders": {"show": "order", "t": 0.7},
+        "orders alike": {"show": "order", "axis_b": (0, 0, -3), "angle_b": 40},
+        "three ways": {"show": "path", "axis": (1, 0, 1), "angle": 170, "t": 0.25},
         "long way": {"axis": (1, 1, 1), "angle": 100, "long_way": True, "t": 0.4},
         "long way of no turn": {"angle": 0, "long_way": True, "t": 0.25},
         "long way of a half turn": {"angle": 180, "long_way": True, "interpolation": "nlerp", "t": 0.3},
@@ -66,7 +80,7 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="axis angle start t interpolation long_way show_euler point",
+    parameters="axis angle start t interpolation long_way show_euler point show axis_b angle_b",
     solution="q q_total R_total euler rotated_point interpolated sandwich",
     link=(
         "axis=1,1,0&angle=120&start=0.5,0.5,0.5,0.5&t=0.25&interpolation=nlerp&long_way=1&show_euler=1"

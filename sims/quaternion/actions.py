@@ -18,6 +18,8 @@ from sims.quaternion.params import MOST_TURNS, REACH, QuaternionParams, Triple
 DIGITS = 12
 """Decimals of the start to which all turns are taken back."""
 SECONDS = 1.2
+AFTER: dict[str, Any] = {"angle": 0.0, "t": 1.0}
+"""With the turn made, the object stays where it is: there is no angle to go."""
 
 
 def hold_tip(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
@@ -31,18 +33,14 @@ def hold_point(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
     return {"point": _rounded(min(max(v, -REACH), REACH) for v in place)}
 
 
+def hold_t(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """t where the mark of the plot goes."""
+    return {"t": round(min(max(place[0], 0.0), 1.0), 2)}
+
+
 def _rounded(place: Any) -> Triple:
     x, y, z = (round(v, 3) + 0.0 for v in place)
     return x, y, z
-
-
-def compose(p: QuaternionParams) -> dict[str, Any]:
-    """The turn becomes part of the start: start = q ⊗ start. Axis and angle stay, so that it can be made again."""
-    made = [*p.turns, (*p.axis, p.angle)][-MOST_TURNS:]
-    while len(spell(sum(made, ()))) > LONGEST_VALUE:  # what doesn't fit in a link can't be kept
-        made = made[1:]
-    start = _turned(quaternion.normalize(p.start), p.axis, p.angle)
-    return {"start": tuple(start.tolist()), "history": sum(made, ())}
 
 
 def undo(p: QuaternionParams) -> dict[str, Any]:
@@ -68,13 +66,45 @@ def _turned(start: Array, axis: Any, angle: float) -> Array:
 
 
 def play(p: QuaternionParams) -> Iterator[Step]:
-    """The object goes from start to target."""
+    """What is shown happens: the turn, two turns in both orders, or three ways from start to target."""
+    yield from {"order": _both, "path": _ways}.get(p.topic, _turn)(p)
+
+
+def _turn(p: QuaternionParams) -> Iterator[Step]:
+    yield Step({"angle": 0.0, "t": 1.0}, 0.0)
+    yield Step({"angle": 0.0}, 0.25)
+    yield Step({"angle": p.angle}, SECONDS, words="The object turns about n; on its dial q goes half as far.")
+
+
+def _ways(p: QuaternionParams) -> Iterator[Step]:
     yield Step({"t": 0.0}, 0.0)
     yield Step({"t": 0.0}, 0.25)
-    yield Step({"t": 1.0}, SECONDS)
+    yield Step(
+        {"t": 1.0}, 2.0 * SECONDS, even=True, words="All three take the same time: watch who is ahead on the way."
+    )
+
+
+def _both(p: QuaternionParams) -> Iterator[Step]:
+    yield Step({"t": 0.0}, 0.0)
+    yield Step({"t": 0.0}, 0.25, words="Both begin alike.")
+    yield Step({"t": 0.5}, SECONDS, words="The left one turns by A first, the right one by B.")
+    yield Step({"t": 1.0}, SECONDS, words="Then the other turn: the left one by B, the right one by A.")
 
 
 def apply(p: QuaternionParams) -> Iterator[Step]:
-    """The object turns to the target, which becomes the start; there it stays, with no angle to go."""
-    yield from play(p)
-    yield Step({**compose(p), "angle": 0.0, "t": 1.0}, 0.0)
+    """The object makes the turn; where it comes to is the start of the next one. No angle, no turn."""
+    if p.angle == 0.0:
+        return
+    if p.topic in ("order", "path"):
+        yield Step({"show": "turn"}, 0.0)
+    yield from _turn(p)
+    yield Step({**_made(p), **AFTER}, 0.0)
+
+
+def _made(p: QuaternionParams) -> dict[str, Any]:
+    """The turn as part of the start, start = q ⊗ start, and of the list."""
+    made = [*p.turns, (*p.axis, p.angle)][-MOST_TURNS:]
+    while len(spell(sum(made, ()))) > LONGEST_VALUE:  # what doesn't fit in a link can't be kept
+        made = made[1:]
+    start = _turned(quaternion.normalize(p.start), p.axis, p.angle)
+    return {"start": tuple(start.tolist()), "history": sum(made, ())}

@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from geometry import quaternion
 from geometry.arrays import Array
@@ -23,12 +22,8 @@ MARKS = np.linspace(0.0, 1.0, 13)
 FINE = np.linspace(0.0, 1.0, 61)
 """Times of the points of a path; every fifth is that of a mark."""
 COARSE = FINE[::2]
-OUTWARD, INWARD = np.array([[1.0], [1.09]]), np.array([[0.91], [1.0]])
-"""Radii between which a mark is drawn: SLERP's and NLERP's, on one arc, are on its two sides."""
-EVERY = np.arange(len(FINE) - 1)
-PIECES = np.column_stack([EVERY, EVERY + 1])
-DASHES: dict[Name, npt.NDArray[np.intp]] = {"slerp": PIECES, "nlerp": PIECES[EVERY % 5 < 3], "euler": PIECES[::2]}
-"""From which points of a path to which its pieces are drawn."""
+RADII = np.array([[1.0], [1.16]])
+"""Between which a mark is drawn."""
 
 
 @dataclass(frozen=True)
@@ -38,33 +33,22 @@ class NosePath:
     path: Array
     marks: Array
     drawn: Array
-    """Pieces (n, 2, 3) of the path, in its dash, and then the marks."""
-
-
-@dataclass(frozen=True)
-class NosePaths:
-    """The one turn that SLERP and NLERP make (unit axis, radians), and the path of each interpolation."""
-
-    axis: Array
-    angle: float
-    by_name: Mapping[Name, NosePath]
+    """Pieces (n, 2, 3) of the path, and then the marks."""
 
 
 @lru_cache(maxsize=64)
-def paths(start: bytes, target: bytes, long_way: bool) -> NosePaths:
-    """The paths between two unit quaternions, which are given as the bytes of their arrays."""
+def paths(start: bytes, target: bytes, long_way: bool) -> Mapping[Name, NosePath]:
+    """The path of each interpolation between two unit quaternions, which are given as the bytes of their arrays."""
     first, last = np.frombuffer(start), np.frombuffer(target)
     R = quaternion.to_matrix(first)
     axis, angle = turn_between(first, last, long_way=long_way)
     arc = orbit(axis, R[:, 0], FINE * angle)
-    uneven = orbit(axis, R[:, 0], nlerp_angle(angle, MARKS))
     own = euler_path(R, quaternion.to_matrix(last))
-    by_name: dict[Name, NosePath] = {
-        "slerp": _path("slerp", arc, arc[::5], OUTWARD),
-        "nlerp": _path("nlerp", arc, uneven, INWARD),
-        "euler": _path("euler", own, own[::5], OUTWARD),
+    return {
+        "slerp": _path(arc, arc[::5]),
+        "nlerp": _path(arc, orbit(axis, R[:, 0], nlerp_angle(angle, MARKS))),
+        "euler": _path(own, own[::5]),
     }
-    return NosePaths(axis, float(angle), by_name)
 
 
 def euler_path(first: Array, last: Array) -> Array:
@@ -81,10 +65,10 @@ def ball_path(start: bytes, target: bytes, long_way: bool, euler: bool) -> Array
     first, last = np.frombuffer(start), np.frombuffer(target)
     if euler:
         return to_ball(euler_interpolation(first, last, COARSE))[0]
-    whole = paths(start, target, long_way)
-    return to_ball(turned_by(first, whole.axis, COARSE * whole.angle))[0]
+    axis, angle = turn_between(first, last, long_way=long_way)
+    return to_ball(turned_by(first, axis, COARSE * float(angle)))[0]
 
 
-def _path(name: Name, path: Array, places: Array, radii: Array) -> NosePath:
-    marks = places[:, None] * radii
-    return NosePath(path, marks, np.concatenate([path[DASHES[name]], marks]))
+def _path(path: Array, places: Array) -> NosePath:
+    marks = places[:, None] * RADII
+    return NosePath(path, marks, np.concatenate([np.stack([path[:-1], path[1:]], axis=1), marks]))

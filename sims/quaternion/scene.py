@@ -1,4 +1,4 @@
-"""The scene: the object between its start and its target, the axis with its angle, p, and the nose's paths."""
+"""The scene: the object between its start and its target, and the axis with its angle; then what a topic adds."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ import trimesh
 
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
-from sims.quaternion.params import TIP, QuaternionParams
-from sims.quaternion.paths import Name, NosePath
+from sims.quaternion.params import TIP, WHOLE, QuaternionParams
+from sims.quaternion.scene_orders import BothOrders
+from sims.quaternion.scene_ways import Ways
 from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
 """Radius of the angle's arc, and how far up the axis it is, in metres: outside the unit sphere."""
-SPHERE = trimesh.creation.icosphere(subdivisions=4)
 ARROWHEAD = trimesh.creation.cone(radius=0.05, height=0.15, sections=24)
 ARROWHEAD.apply_transform(trimesh.transformations.rotation_matrix(-0.5 * np.pi, (1.0, 0.0, 0.0)))
 ARROWHEAD.apply_translation((ARC, -0.12, 0.0))
-NAMES: dict[Name, str] = {"slerp": "SLERP", "nlerp": "NLERP", "euler": "Euler"}
+LAP = 0.12
+"""How far below the arc the circle of the first whole turn is, once the angle is in its second."""
 
 
 class QuaternionScene:
@@ -27,22 +28,26 @@ class QuaternionScene:
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=6.0, height=-1.4)
-        stage.axes("/world", 1.12, radius=0.008)
+        self.world = stage.axes("/world", 1.12, radius=0.008)
         self.object = stage.axes("/object", 1.08, radius=0.018, letters=None)
         stage.aircraft("/object")
         self.start, self.target = Ghost(stage, "start"), Ghost(stage, "target")
         self.axis = Axis(stage)
-        self.sphere = Sphere(stage)
         self.point = Point(stage)
+        self.ways, self.orders = Ways(stage), BothOrders(stage)
         self.euler = stage.label("/euler", "", (0.0, 0.0, -1.32))
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
+        alone = p.topic not in ("order", "path")
+        self.object.show(alone)
         self.object.pose(s.interpolated.q.tolist())
-        self.start.draw(s.start.tolist(), not s.at_start)
-        self.target.draw(s.q_total.tolist(), not s.at_target)
-        self.axis.draw(p, s)
-        self.sphere.draw(p, s)
-        self.point.draw(p, s)
+        self.world.show(alone)
+        self.start.draw(s.start.tolist(), alone and not s.at_start)
+        self.target.draw(s.q_total.tolist(), alone and not s.at_target)
+        self.axis.draw(p, s, alone)
+        self.point.draw(p, s, p.topic == "point" and p.show_point)
+        self.ways.draw(p, s)
+        self.orders.draw(s)
         self.euler.say(euler_in_words(s) if p.show_euler else None)
 
 
@@ -76,6 +81,9 @@ class Axis:
         stage.lines("/axis/back", "held", [(0.0, 0.0, 0.0), (0.0, 0.0, -TIP)], width=1.5, dash=(0.06, 0.05))
         self.turn = stage.group("/axis/turn")
         self.turn.pose(position=(0.0, 0.0, HEIGHT))
+        self.lap = stage.lines("/axis/turn/lap", "held", width=2.0)
+        self.lap.arc(ARC, 2.0 * math.pi)
+        self.lap.pose(position=(0.0, 0.0, -LAP))
         self.line = stage.lines("/axis/turn/arc", "held", [(ARC, 0.0, 0.0), (ARC, 0.0, 0.001)], width=4.0)
         stage.lines("/axis/turn/begin", "ghost", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
         self.end = stage.lines("/axis/turn/end", "held", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
@@ -85,59 +93,20 @@ class Axis:
         self.tip = stage.grip("/tip", 0.05)
         stage.label("/tip/label", "n", (0.0, 0.0, 0.17))
 
-    def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
+    def draw(self, p: QuaternionParams, s: QuaternionSolution, visible: bool) -> None:
+        self.frame.show(visible)
+        self.tip.show(visible)
         self.frame.pose(s.axis_frame.tolist())
         self.tip.pose(position=s.tip.tolist())
-        radians = math.radians(p.angle)
+        again = p.angle > WHOLE
+        radians = math.radians(p.angle - WHOLE if again else p.angle)
         self.turn.show(p.angle > 0.0)
+        self.lap.show(again)
         self.line.arc(ARC, radians)
         self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
         middle = 1.4 * ARC * math.cos(radians / 2), 1.4 * ARC * math.sin(radians / 2), 0.0
         self.label.pose(position=middle)
         self.label.text(f"θ {quantity(p.angle, '°', 0)}")
-
-
-class Sphere:
-    """The unit sphere with the paths of the nose."""
-
-    def __init__(self, stage: Stage) -> None:
-        self.node = stage.group("/sphere")
-        stage.mesh("/sphere/ball", SPHERE, "ghost", opacity=0.1, side="back")
-        for axis, turn in {"x": (0.5, 0.5, 0.5, 0.5), "y": (0.5, -0.5, -0.5, -0.5), "z": (1.0, 0.0, 0.0, 0.0)}.items():
-            circle = stage.lines(f"/sphere/circle_{axis}", "ghost", width=0.8)
-            circle.arc(1.0, 2.0 * math.pi)
-            circle.pose(turn)
-        self.paths = {name: Path(stage, name) for name in NAMES}
-
-    def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
-        self.node.show(p.show_paths)
-        if not p.show_paths:
-            return
-        for name, path in self.paths.items():
-            path.draw(s.ways[name], p.interpolation)
-
-
-class Path:
-    """One interpolation's path and marks: thick in ink where it is the chosen one, else thin as a ghost."""
-
-    def __init__(self, stage: Stage, name: Name) -> None:
-        self.name = name
-        path = f"/sphere/{name}"
-        stage.group(path)
-        self.thick = stage.lines(f"{path}/chosen", "ink", width=3.5)
-        self.thin = stage.lines(f"{path}/ghost", "ghost", width=1.5)
-        stage.linked("interpolation", self.thick)
-        stage.linked("t", self.thick)
-        self.label = stage.label(f"{path}/label", NAMES[name])
-
-    def draw(self, way: NosePath, chosen: Name) -> None:
-        """Where SLERP's and NLERP's arc is drawn for one of them, only the other's marks are added."""
-        line, other = (self.thick, self.thin) if chosen == self.name else (self.thin, self.thick)
-        line.pieces(way.marks if {self.name, chosen} == {"slerp", "nlerp"} else way.drawn)
-        other.show(False)
-        self.label.show(chosen == self.name)
-        if chosen == self.name:
-            self.label.pose(position=(1.2 * way.path[len(way.path) // 2]).tolist())
 
 
 class Point:
@@ -151,16 +120,16 @@ class Point:
         self.track = stage.lines("/axis/track", "held", width=1.8, dash=(0.03, 0.04))
         stage.linked("point", self.track)
 
-    def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
+    def draw(self, p: QuaternionParams, s: QuaternionSolution, visible: bool) -> None:
         turning = s.track.radius > 0.01 and p.angle > 0.0
-        self.grip.show(p.show_point)
-        self.image.show(p.show_point)
+        self.grip.show(visible)
+        self.image.show(visible)
         self.image_name.show(s.moved)
-        self.track.show(p.show_point and turning)
-        if not p.show_point:
+        self.track.show(visible and turning)
+        if not visible:
             return
         self.grip.pose(position=p.point)
         self.image.pose(position=s.rotated_point.tolist())
         if turning:
-            self.track.arc(s.track.radius, math.radians(p.angle), s.track.begin)
+            self.track.arc(s.track.radius, math.radians(min(p.angle, WHOLE)), s.track.begin)
             self.track.pose(position=(0.0, 0.0, s.track.height))

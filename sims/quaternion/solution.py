@@ -11,15 +11,19 @@ import numpy as np
 from geometry import hamilton, quaternion
 from geometry.arrays import Array, cross, dot
 from geometry.euler import matrix_to_euler
-from geometry.interpolation import euler_interpolation, nlerp, nlerp_angle, slerp
+from geometry.interpolation import euler_interpolation, nlerp, nlerp_angle, slerp, turn_between
 from geometry.rotations import unit
+from sims.quaternion.order import Orders, both_orders
 from sims.quaternion.params import ONE, TIP, QuaternionParams, Triple
 from sims.quaternion.paths import Name, NosePath, ball_path, paths
 
 IDENTITY = np.array(ONE)
+NO_PATH = np.zeros((0, 3))
 APART = 0.15
 SAME = 1e-6
 """Radians within which two orientations are drawn as one."""
+INFINITE = 1e9
+"""Distance in the ball from which on only rounding tells a place from one at infinity."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,16 @@ class Interpolated:
 
     q: Array
     R: Array
+
+
+@dataclass(frozen=True)
+class Way:
+    """One interpolation: the object's quaternion at t and degrees from the start to there; the nose and its path."""
+
+    q: Array
+    at: Array
+    turned: float
+    nose: NosePath
 
 
 @dataclass(frozen=True)
@@ -74,7 +88,7 @@ class QuaternionSolution:
     """The start there, and the target as the path comes to it; only for a start that is turned."""
     ball_target: Array | None
     ball_path: Array
-    """Its path from start to target there, (n, 3)."""
+    """Its path from start to target there, (n, 3); empty where the ball isn't shown."""
     axis_frame: Array
     """Orientation of the angle's arc: z along the axis, x where the arc starts."""
     tip: Array
@@ -84,7 +98,10 @@ class QuaternionSolution:
     at_start: bool
     """The object is drawn where the start is."""
     at_target: bool
-    ways: Mapping[Name, NosePath]
+    ways: Mapping[Name, Way]
+    """The interpolations beside each other; empty where they aren't shown."""
+    orders: Orders | None
+    """A and B in both orders, where they are shown."""
 
 
 def solve(p: QuaternionParams) -> QuaternionSolution:
@@ -94,11 +111,10 @@ def solve(p: QuaternionParams) -> QuaternionSolution:
     total = quaternion.multiply(q, start)
     R_total = quaternion.to_matrix(total)
     angles, locked = matrix_to_euler(R_total, "zyx", "intrinsic")
-    now = _between(p, start, total)
+    now = _between(p, p.interpolation, start, total)
     n = unit(p.axis)
-    ends = start.tobytes(), total.tobytes()
-    way = paths(*ends, p.long_way)
-    path = ball_path(*ends, p.long_way, p.interpolation == "euler")
+    way_axis, way_angle = turn_between(start, total, long_way=p.long_way)
+    path = _ball_path(p, start, total)
     turned = not _same(start, IDENTITY)
     steps = hamilton.sandwich(q, p.point)
     frame = _axis_frame(n, quaternion.to_matrix(start))
@@ -115,14 +131,14 @@ def solve(p: QuaternionParams) -> QuaternionSolution:
         n=n,
         length=math.hypot(*p.axis),
         start=start,
-        way_axis=way.axis,
-        way_angle=math.degrees(way.angle),
-        lead=math.degrees(nlerp_angle(way.angle, p.t) - p.t * way.angle),
+        way_axis=way_axis,
+        way_angle=math.degrees(way_angle),
+        lead=math.degrees(nlerp_angle(float(way_angle), p.t) - p.t * way_angle),
         ball_q=_in_ball(q),
         ball_minus_q=_in_ball(-q),
         ball_now=_in_ball(now),
         ball_start=_in_ball(start) if turned else None,
-        ball_target=_finite(path[-1]) if turned else None,
+        ball_target=_finite(path[-1]) if turned and len(path) else None,
         ball_path=path,
         axis_frame=quaternion.from_matrix(frame),
         tip=TIP * n,
@@ -130,15 +146,31 @@ def solve(p: QuaternionParams) -> QuaternionSolution:
         moved=math.dist(p.point, steps.rotated[1:]) > APART,
         at_start=_same(now, start),
         at_target=_same(now, total),
-        ways=way.by_name,
+        ways=_ways(p, start, total) if p.topic == "path" else {},
+        orders=both_orders(p.axis, p.angle, p.axis_b, p.angle_b, start, p.t) if p.topic == "order" else None,
     )
 
 
-def _between(p: QuaternionParams, start: Array, total: Array) -> Array:
+def _between(p: QuaternionParams, by: Name, start: Array, total: Array) -> Array:
     """The object's quaternion at t."""
-    if p.interpolation == "euler":
+    if by == "euler":
         return euler_interpolation(start, total, p.t)
-    return (slerp if p.interpolation == "slerp" else nlerp)(start, total, p.t, long_way=p.long_way)
+    return (slerp if by == "slerp" else nlerp)(start, total, p.t, long_way=p.long_way)
+
+
+def _ways(p: QuaternionParams, start: Array, total: Array) -> dict[Name, Way]:
+    found: dict[Name, Way] = {}
+    for name, nose in paths(start.tobytes(), total.tobytes(), p.long_way).items():
+        q = _between(p, name, start, total)
+        turn = quaternion.to_axis_angle(quaternion.multiply(q, quaternion.conjugate(start)))[1]
+        found[name] = Way(q, quaternion.to_matrix(q)[:, 0], math.degrees(turn), nose)
+    return found
+
+
+def _ball_path(p: QuaternionParams, start: Array, total: Array) -> Array:
+    if p.topic != "ball":
+        return NO_PATH
+    return ball_path(start.tobytes(), total.tobytes(), p.long_way, p.interpolation == "euler")
 
 
 def _axis_frame(n: Array, start: Array) -> Array:
@@ -165,7 +197,7 @@ def _same(p: Array, q: Array) -> bool:
 
 def _in_ball(q: Array) -> Array | None:
     place, finite = hamilton.to_ball(q)
-    return place if finite else None
+    return place if finite and max(map(abs, place.tolist())) < INFINITE else None
 
 
 def _finite(place: Array) -> Array | None:

@@ -6,11 +6,13 @@ the rays meet, or nearly meet, and noise in the pixels says how far that may be 
 
 from __future__ import annotations
 
+from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Objective, Sim, Typed, View
-from sims.triangulation import actions
+from sims.triangulation import actions, calibration
+from sims.triangulation.captions import caption
 from sims.triangulation.panes import panes
-from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, SURENESS, TriangulationParams
-from sims.triangulation.readouts import METHODS, caption, describe, readouts
+from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, RIG, SURENESS, TriangulationParams
+from sims.triangulation.readouts import EQUATIONS, METHODS, describe, readouts
 from sims.triangulation.scene import TriangulationScene, seen
 from sims.triangulation.solution import TriangulationSolution, solve
 
@@ -31,7 +33,7 @@ SIM = Sim(
     scene=TriangulationScene,
     caption=caption,
     readouts=readouts,
-    folds=(IMAGES, METHODS, SURENESS,),
+    folds=(IMAGES, METHODS, EQUATIONS, SURENESS, RIG),
     describe=describe,
     view=View((3.8, -2.2, 3.4), (0.1, 2.0, 1.35), 2.5),
     seen=seen,
@@ -39,9 +41,26 @@ SIM = Sim(
     actions=(
         Action("new-sample", "New sample", "Noise of the next seed; turns noise on if it is off", actions.new_sample),
         Action("noise", "Noise on or off", "Noise of 1 px on both points, or none", actions.switch_noise),
+        Action(
+            "middlebury", "Middlebury", "Two still cameras indoors, with differing principal points (Adirondack)",
+            calibration.middlebury, group=RIG,
+        ),
+        Action("kitti", "KITTI", "Two cameras on the roof of a car", calibration.kitti, group=RIG),
     ),
     selects="method",
-    handles={"/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right},
+    paste=Paste(
+        group=RIG,
+        title="A rig of your own",
+        about="What a stereo data set’s calibration file says: Middlebury’s calib.txt, or KITTI’s calib_cam_to_cam.txt",
+        example=calibration.EXAMPLE,
+        read=calibration.read,
+        changes=calibration.changes,
+        endings=(".txt",),
+    ),
+    handles={
+        "/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right,
+        "depth": actions.hold_depth,
+    },
     typed=(
         Typed(
             "/point", "3D point", "Sets both image points exactly, as dragging the point in the scene does",
@@ -66,10 +85,10 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="baseline focal left_uv right_uv noise seed method",
+    parameters="baseline focal left_uv right_uv noise seed method hold width height cx cy doffs",
     solution=(
         "point by_method ray_gap closest_points disparity depth_from_disparity covariance"
-        " ellipsoid_axes parallax_angle in_front"
+        " ellipsoid_axes parallax_angle in_front ray_angle point_angle equations singular_values least_vector"
     ),
     link="baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
     state={

@@ -4,31 +4,38 @@ from __future__ import annotations
 
 from typing import Any
 
-from sims.triangulation.params import FARTHEST, LAST, LAST_SEED, TriangulationParams
-from sims.triangulation.solution import TriangulationSolution, _pair, rig
+from sims.triangulation.depth_plot import within
+from sims.triangulation.holding import apart, in_sight
+from sims.triangulation.params import FARTHEST, LAST_SEED, TriangulationParams
+from sims.triangulation.rig import rig
+from sims.triangulation.scale import Scale
+from sims.triangulation.solution import TriangulationSolution, measured, pair
 
 
 def hold_point(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
     """Both pixels of a point in the world; it stays where both pictures show it."""
-    cameras = rig(p.baseline, p.focal)
+    cameras = rig(p)
     x, y, z = place
     in_front = (x, max(y, 1e-3), z)
-    (u, v), (other, _) = (_pair(camera.project(in_front)[0]) for camera in (cameras.left, cameras.right))
-    nearest = u - LAST[0]
-    other = max(other, nearest)
-    shift = max(-other, 0.0) + min(LAST[0] - u, 0.0)
-    v = min(max(v, 0.0), LAST[1])
-    return {"left_uv": (u + shift, v), "right_uv": (other + shift, v)}
+    left, right = (pair(camera.project(in_front)[0]) for camera in (cameras.left, cameras.right))
+    return in_sight(left, right, p.last)
+
+
+def hold_depth(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """Both pixels of the point at the depth to which it was dragged in the plot, where it is drawn with its noise."""
+    (ul, _), (ur, _) = measured(p)
+    d, fb = ul - ur + p.doffs, p.focal * p.baseline
+    return apart(p, fb / within(place[0], fb / d) - d) if d > 0.0 else {}
 
 
 def hold_left(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The left pixel."""
-    return {"left_uv": place[:2]}
+    return {"left_uv": Scale.of(p).pixel(place)}
 
 
 def hold_right(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The right pixel."""
-    return {"right_uv": place[:2]}
+    return {"right_uv": Scale.of(p).pixel(place)}
 
 
 def held_point(p: TriangulationParams, s: TriangulationSolution) -> tuple[float, float, float] | None:

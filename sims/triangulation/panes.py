@@ -4,65 +4,79 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Literal
 
-import numpy as np
-
-from geometry.triangulation import depth_sigma
-from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
-from sims.kit.plot import Plot, room
 from sims.kit.readout import quantity
-from sims.triangulation.params import NAMES, Method, Pixel, TriangulationParams
+from sims.kit.world_drawing import draw_in_picture
+from sims.triangulation.corners import WORLD
+from sims.triangulation.depth_plot import plot
+from sims.triangulation.holding import Pixel
+from sims.triangulation.params import NAMES, Method, TriangulationParams
+from sims.triangulation.rig import Rig, rig
+from sims.triangulation.scale import Scale
 from sims.triangulation.solution import TriangulationSolution
 
 Side = Literal["left", "right"]
-MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-LONG_ENOUGH = 75.0
-"""Pixels that the arrow of an error should be long."""
-SEEN_ERROR = 5e-4
-NO_DEPTH = 4.0
-"""Metres for which the plot has room when there is no point."""
+MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100)
+LONG_ENOUGH, SHORTEST = 36.0, 3.0
+"""How long the arrow of an error should be, and the least that is drawn, where a picture is 640 wide."""
 
 
 def panes(p: TriangulationParams, s: TriangulationSolution) -> Sequence[Pane]:
     """Both pictures and the plot."""
     chosen = s.by_method[p.method]
-    times = magnification(chosen.reprojection_left, chosen.reprojection_right)
-    return _picture(p, s, "left", times), _picture(p, s, "right", times), _plot(p, s)
+    scale = Scale.of(p)
+    times = magnification(chosen.reprojection_left, chosen.reprojection_right, scale.factor)
+    return _picture(p, s, "left", scale, times), _picture(p, s, "right", scale, times), plot(p, s)
 
 
-def magnification(left: float | None, right: float | None) -> int:
-    """How many times longer than the errors their arrows are, so that the longer one can be seen."""
-    longest = max(left or 0.0, right or 0.0)
-    if longest < SEEN_ERROR:
+def magnification(left: float | None, right: float | None, drawn: float = 1.0) -> int:
+    """How many times longer than the errors their arrows are, so that the longer one can be seen.
+
+    An error of a pixel is `drawn` so large.
+    """
+    longest = drawn * max(left or 0.0, right or 0.0)
+    if MAGNIFICATIONS[-1] * longest < SHORTEST:
         return 1
     return next((m for m in MAGNIFICATIONS if m * longest >= LONG_ENOUGH), MAGNIFICATIONS[-1])
 
 
-def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, times: int) -> Pane:
+def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale: Scale, times: int) -> Pane:
     left = side == "left"
     other: Side = "right" if left else "left"
     held, measured = (p.left_uv, s.measured_left) if left else (p.right_uv, s.measured_right)
-    seen = {
-        name: (result.pixel_left, result.reprojection_left) if left else (result.pixel_right, result.reprojection_right)
-        for name, result in s.by_method.items()
-    }
-    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
-    picture.homogeneous_line((s.line_left if left else s.line_right).tolist(), other, dash="7 5", link=other)
+    picture = _world(side, rig(p), scale).copy()
+    line = scale.line(s.line_left if left else s.line_right)
+    picture.homogeneous_line(line, other, dash="7 5", link=other)
     if p.noise > 0.0:
-        _measured(picture, measured, side)
+        _measured(picture, scale.at(measured), side)
     if s.true_point is not None:
-        picture.point("true", held, "True point", "held", quiet=True)
-    for name, (at, _) in seen.items():
-        if at is not None:
-            _reprojected(picture, name, at, chosen=name == p.method)
-    found, error = seen[p.method]
+        picture.point("true", scale.at(held), "True point", "held", quiet=True)
+    for name, result in s.by_method.items():
+        if (at := result.pixel_left if left else result.pixel_right) is not None:
+            _reprojected(picture, name, scale.at(at), chosen=name == p.method)
+    chosen = s.by_method[p.method]
+    found = chosen.pixel_left if left else chosen.pixel_right
+    error = chosen.reprojection_left if left else chosen.reprojection_right
     if found is not None and error is not None:
-        _error(picture, measured, found, error, times)
-    picture.handle(f"{side}_uv", held, f"{side.capitalize()} point", side[0].upper(), link=side)
-    return picture.pane(_error_in_words(error, times))
+        _error(picture, scale.at(measured), scale.at(found), times)
+    u, v = held
+    picture.handle(
+        f"{side}_uv", scale.at(held), f"{side.capitalize()} point", side[0].upper(), where=f"{u:.1f}, {v:.1f} pixels",
+        link=side,
+    )  # fmt: skip
+    return replace(picture.pane(_error_in_words(error, times)), title=side.capitalize())
+
+
+@lru_cache(maxsize=128)
+def _world(side: Side, cameras: Rig, scale: Scale) -> Picture:
+    """What a camera sees of the little world."""
+    picture = Picture(side, f"{side.capitalize()} picture", scale.width, scale.height)
+    draw_in_picture(picture, scale.camera(cameras.left if side == "left" else cameras.right), WORLD)
+    return picture
 
 
 def _measured(picture: Picture, measured: Pixel, side: Side) -> None:
@@ -82,10 +96,10 @@ def _reprojected(picture: Picture, name: Method, at: Pixel, *, chosen: bool) -> 
         picture.outside((*at, 1.0), "ink", "", link=name, title=words)
 
 
-def _error(picture: Picture, measured: Pixel, found: Pixel, error: float, times: int) -> None:
+def _error(picture: Picture, measured: Pixel, found: Pixel, times: int) -> None:
     """A ring round where the result is seen, and the way there from what was measured."""
     picture.dot(found, "ink", 10, hollow=True)
-    if error >= SEEN_ERROR:
+    if times * math.dist(measured, found) >= SHORTEST:
         tip = [m + times * (f - m) for m, f in zip(measured, found, strict=True)]
         picture.arrow(measured, tip, "ink", width=2.5)
 
@@ -93,27 +107,5 @@ def _error(picture: Picture, measured: Pixel, found: Pixel, error: float, times:
 def _error_in_words(error: float | None, times: int) -> str:
     if error is None:
         return "no point"
-    drawn = f", arrow ×{times}" if times > 1 else ""
+    drawn = f" ×{times}" if times > 1 else ""
     return f"error {quantity(error, 'px', 2)}{drawn}"
-
-
-def _plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
-    depth, sigma = s.depth, s.depth_sigma
-    noise = f"at {quantity(s.sigma_px, 'px', 2)} noise"
-    if depth is None or sigma is None or s.vague:
-        least = float(depth_sigma(NO_DEPTH, p.baseline, p.focal, s.sigma_px))
-        return _curves(p.baseline, p.focal, s.sigma_px, room(NO_DEPTH, 1.5), room(least, 1.8)).pane(noise)
-    plot = _curves(p.baseline, p.focal, s.sigma_px, room(depth, 1.5), room(sigma, 1.8))
-    return plot.pane(f"{quantity(depth, 'm', 2)} ± {quantity(sigma, 'm')} {noise}", (depth, sigma))
-
-
-@lru_cache(maxsize=128)
-def _curves(baseline: float, focal: float, sigma: float, x_max: float, y_max: float) -> Plot:
-    """Half and twice the baseline are ghosts."""
-    plot = Plot("plot", "Depth", x="depth Z (m)", y="σ of Z (m)", x_max=x_max, y_max=y_max)
-    for words, times in (("½ b", 0.5), ("2 b", 2.0), ("b", 1.0)):
-        end = min(x_max, math.sqrt(y_max / float(depth_sigma(1.0, times * baseline, focal, sigma))))
-        depths = np.linspace(0.0, end, 25)[1:]
-        sigmas = depth_sigma(depths, times * baseline, focal, sigma)
-        plot.curve([(0.0, 0.0), *zip(depths.tolist(), sigmas.tolist(), strict=True)], words, ghost=times != 1.0)
-    return plot

@@ -7,27 +7,19 @@ from collections.abc import Iterator
 
 from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
 from sims.triangulation.params import IMAGES, NAMES, SURENESS, TriangulationParams
-from sims.triangulation.solution import SAMPLES, TriangulationSolution
+from sims.triangulation.solution import SAMPLES, SIGMAS, TriangulationSolution
 
 VERY_FAR = 1e4
 """Metres of depth from which on coordinates say nothing."""
 TROUBLE = {
-    "parallel": "Parallel rays: no finite point. The disparity is zero, as for something infinitely far away.",
+    "parallel": "Parallel rays: no finite point. {zero} is zero, as for something infinitely far away.",
     "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind the cameras, {behind}.",
     "undefined": "The pixels are too far away to mean anything.",
 }
 
 
-METHODS = "The three methods"
-
-
-def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
-    """What to do, or what to see."""
-    if s.point is None:
-        return "The rays don’t meet in front of the cameras: pull the right point to the left in its picture."
-    if p.noise > 0.0:
-        return "With noise on both pixels the rays miss each other: the ellipsoid says where the point may be."
-    return "Drag a point in one picture: its ray turns, and the place where both rays meet moves in depth."
+METHODS, EQUATIONS = "The three methods", "The equations of DLT"
+BY_PICTURE = ("left", "left", "right", "right")
 
 
 def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
@@ -35,11 +27,10 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     yield from _status(p, s)
     if s.depth_from_disparity is not None:
         words = f"Depth from a disparity of {quantity(s.disparity, 'px', 2)}"
-        yield Formula(
-            words, f"{symbol('Z')}<mo>=</mo>{FB_OVER_D}", mathml(s.depth_from_disparity), "m", link="baseline focal"
-        )
+        law = f"{symbol('Z')}<mo>=</mo>{fb_over(p.doffs)}"
+        yield Formula(words, law, mathml(s.depth_from_disparity), "m", link="baseline focal")
     if s.point is not None and s.point[1] < VERY_FAR:
-        yield Formula(f"Point by the {NAMES[p.method]} method", symbol("X"), row(s.point.tolist()), "m")
+        yield Formula(_point_in_words(p, s), symbol("X"), row(s.point.tolist()), "m")
     if s.depth_sigma is not None and not s.vague:
         yield _depth_sigma(s)
     yield Fold(IMAGES)
@@ -48,14 +39,30 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     yield Fold(METHODS)
     yield _methods(p, s)
     yield Formula("Gap between the rays", symbol("g"), mathml(100.0 * s.ray_gap, 2), "cm")
-    yield Formula("Angle between the rays (parallax)", symbol("α"), mathml(s.parallax_angle, 2), "°")
+    yield Formula("Angle between the two rays", symbol("α"), mathml(s.ray_angle, 2), "°")
+    if s.point_angle is not None:
+        words = "Angle at the point, between the lines to both cameras (parallax)"
+        yield Formula(words, symbol("β"), mathml(s.point_angle, 2), "°")
+    yield Fold(EQUATIONS)
+    yield from _equations(s)
     yield Fold(SURENESS)
     yield from _uncertainty(p, s)
     if p.noise > 0.0:
         yield _noise(p, s)
 
 
-FB_OVER_D = '<mstyle displaystyle="true"><mfrac><mrow><mi>f</mi><mi>b</mi></mrow><mi>d</mi></mfrac></mstyle>'
+def _point_in_words(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """Short: a line more would move the pictures while a hand is in them."""
+    if s.matched is None:
+        return f"Point by the {NAMES[p.method]} method"
+    name = NAMES[p.method]
+    return f"{name[0].upper()}{name[1:]}: {length(s.matched.apart)} off a corner"
+
+
+def fb_over(doffs: float) -> str:
+    """f b / d, or f b / (d + doffs) where the principal points differ."""
+    below = f"<mrow><mi>d</mi><mo>+</mo>{symbol('doffs')}</mrow>" if doffs else "<mi>d</mi>"
+    return f'<mstyle displaystyle="true"><mfrac><mrow><mi>f</mi><mi>b</mi></mrow>{below}</mfrac></mstyle>'
 
 
 def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
@@ -63,14 +70,33 @@ def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
         behind = (
             f"{quantity(-s.closest_points.item(0, 1), 'm', 2)} away" if s.closest_points is not None else "far away"
         )
-        yield Note(TROUBLE[s.status].format(behind=behind), "warn")
+        yield Note(TROUBLE[s.status].format(behind=behind, zero=_disparity(p, s)), "warn")
     elif s.vague:
         yield Note("Almost parallel rays: a standard deviation of the depth is larger than the depth itself.", "warn")
-    elif s.depth is not None and s.depth_sigma is not None and 3.0 * s.depth_sigma > s.depth:
-        yield Note("Very unsure: three standard deviations of the depth reach back to the cameras.", "near")
+    elif s.ellipsoid_axes is not None and s.drawn_part < 1.0:
+        long = quantity(2.0 * SIGMAS * s.ellipsoid_axes.item(0), "m", 0)
+        cut = "; the scene shows it up to half the depth from the point" if p.show_ellipsoid else ""
+        yield Note(f"Very unsure: the ellipsoid of 3σ is {long} long{cut}.", "near")
     others = [NAMES[m] for m in NAMES if m != p.method and s.by_method[m].status != s.status]
     if others:
         yield Note(f"The methods disagree on whether there is a point: see {' and '.join(others)} below.", "near")
+
+
+def _disparity(p: TriangulationParams, s: TriangulationSolution) -> str:
+    return f"The disparity of {quantity(s.disparity, 'px', 2)} with doffs added" if p.doffs else "The disparity"
+
+
+def _equations(s: TriangulationSolution) -> Iterator[Formula]:
+    words = "Two equations for each picture, L and R: A X = 0 for a point X = (x, y, z, 1) on both rays"
+    yield Formula(words, symbol("A"), mathml(s.equations, rows=BY_PICTURE))
+    words = "Singular values of A: the last is 0 where the rays meet"
+    yield Formula(words, symbol("s"), row(s.singular_values.tolist(), 4))
+    *place, last = s.least_vector.tolist()
+    words = "Singular vector of the last: the X of length 1 for which A X is least"
+    yield Formula(words, symbol("v"), row([*place, last]))
+    if abs(last) > 1.0 / VERY_FAR:
+        words = "Divided by its last entry: the DLT point"
+        yield Formula(words, symbol("X"), row([v / last for v in place]), "m")
 
 
 def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
@@ -80,14 +106,14 @@ def _methods(p: TriangulationParams, s: TriangulationSolution) -> Table:
         errors = (found.reprojection_left, found.reprojection_right, found.reprojection_rms)
         apart = found.status if found.point is None else "–"
         if found.point is not None and s.point is not None:
-            apart = _length(math.dist(found.point, s.point))
+            apart = length(math.dist(found.point, s.point))
         cells = [figure(e, 3) if e is not None else "–" for e in errors]
         rows.append((words, cells[0], cells[1], cells[2], apart))
     true = () if s.true_point is None else ("true",)
     if s.true_point is not None:
         a, b = math.dist(s.measured_left, p.left_uv), math.dist(s.measured_right, p.right_uv)
         cells = [figure(e, 3) for e in (a, b, math.hypot(a, b) / math.sqrt(2.0))]
-        apart = "–" if s.point is None else _length(math.dist(s.true_point, s.point))
+        apart = "–" if s.point is None else length(math.dist(s.true_point, s.point))
         rows.append(("true point", cells[0], cells[1], cells[2], apart))
     words = "Reprojection error in pixels, and distance from the result"
     return Table(words, rows, tuple(NAMES), p.method, lights=true)
@@ -101,7 +127,8 @@ def _images(p: TriangulationParams, s: TriangulationSolution) -> Table:
     return Table(words, rows, lights=("left", "right"))
 
 
-def _length(metres: float) -> str:
+def length(metres: float) -> str:
+    """In millimetres where that says something."""
     return quantity(1000.0 * metres, "mm", 1) if metres < 10.0 else quantity(metres, "m", 0)
 
 
@@ -111,11 +138,13 @@ def _uncertainty(p: TriangulationParams, s: TriangulationSolution) -> Iterator[R
     yield _depth_sigma(s)
     yield Formula("Covariance of X", symbol("C"), mathml(1e4 * s.covariance, 2), "cm²")
     yield Formula("Half-axes of the 1σ ellipsoid", symbol("a"), row((100.0 * s.ellipsoid_axes).tolist(), 2), "cm")
+    long = mathml(2.0 * SIGMAS * s.ellipsoid_axes.item(0), 2)
+    yield Formula("Length of the ellipsoid that is drawn, of 3σ", f"<mn>6</mn>{symbol('a', '1')}", long, "m")
 
 
 def _depth_sigma(s: TriangulationSolution) -> Formula:
-    words = f"Standard deviation of the depth, for {quantity(s.sigma_px, 'px', 2)} of noise"
-    return Formula(words, symbol("σ", "Z"), mathml(s.depth_sigma), "m")
+    words = f"Standard deviation of Z at {quantity(s.sigma_px, 'px', 2)}"
+    return Formula(words, symbol("σ", "Z"), mathml(s.depth_sigma), "m", link="noise")
 
 
 def _noise(p: TriangulationParams, s: TriangulationSolution) -> Note:

@@ -14,11 +14,15 @@ from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN
-from sims.triangulation.params import NAMES, Pixel, TriangulationParams
+from sims.kit.world_drawing import draw_in_scene
+from sims.triangulation.corners import WORLD
+from sims.triangulation.holding import Pixel
+from sims.triangulation.params import NAMES, TriangulationParams
+from sims.triangulation.rig import rig
 from sims.triangulation.scene_closeup import CloseUp
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
-from sims.triangulation.solution import METHODS, Rig, TriangulationSolution, rig
+from sims.triangulation.solution import METHODS, TriangulationSolution
 
 LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
 FAR = 12.0
@@ -40,18 +44,19 @@ class TriangulationScene:
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
+        draw_in_scene(stage, WORLD)
         self.cameras = [CameraInScene(stage, "left", "L"), CameraInScene(stage, "right", "R")]
         self.baseline = stage.lines("/baseline", "ink", width=2.0)
         stage.linked("baseline", self.baseline)
         self.baseline_label = stage.label("/baseline/label", "", (0.0, -0.1, 0.45))
         self.points = {name: Shape(stage, f"/{name}", name) for name in METHODS}
         self.label = stage.group("/result")
-        self.words = stage.label("/result/label", "", (0.0, 0.0, -0.22))
+        self.words = stage.label("/result/label", "", (-0.1, 0.0, 0.1), anchor="bottom-right")
         self.drop = stage.lines("/result/drop", "ghost", width=1.2)
         self.gap = stage.lines("/gap", "held", width=5.0)
         self.gap_label = stage.label("/gap/label", "")
         self.grip = stage.grip("/point", 0.75 * RADIUS, halo=2.8)
-        self.true_label = stage.label("/point/label", "true point", (0.0, 0.0, 0.1), anchor="bottom-right")
+        self.true_label = stage.label("/point/label", "true point", (0.08, 0.0, -0.08), anchor="top-left")
         self.region = Region(stage, "/uncertainty", 0.004, opacity=0.45)
         self.closeup = CloseUp(stage)
         self.highlighted = stage.ball("/point/lit", 1.3 * RADIUS, "held")
@@ -59,10 +64,11 @@ class TriangulationScene:
         self.warning = stage.label("/warning", "")
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
-        cameras = rig(p.baseline, p.focal)
+        cameras = rig(p)
         half = 0.5 * p.baseline
-        for camera, sight, x in zip(self.cameras, (s.sight_left, s.sight_right), (-half, half), strict=True):
-            camera.draw(cameras, s, sight, x)
+        left, right = self.cameras
+        left.draw(cameras.corners_left, cameras.size, s, s.sight_left, -half)
+        right.draw(cameras.corners_right, cameras.size, s, s.sight_right, half)
         self.baseline.stroke(((-half, 0.0, 1.0), (half, 0.0, 1.0)))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
@@ -104,7 +110,8 @@ class TriangulationScene:
             self.gap_label.text(gap_in_words(s))
         digits = 2 if s.depth_sigma is None or s.depth_sigma >= 0.005 else 4
         unsure = f" ± {figure(s.depth_sigma, digits)}" if s.depth_sigma is not None and not s.vague else ""
-        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m")
+        cut = ", ellipsoid cut" if p.show_ellipsoid and s.drawn_part < 1.0 and not s.vague else ""
+        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m{cut}")
 
     def _warn(self, s: TriangulationSolution) -> None:
         self.warning.show(s.point is None or s.vague)
@@ -132,13 +139,13 @@ class CameraInScene:
         self.highlighted.show(False)
         self.end = ORIGIN
 
-    def draw(self, cameras: Rig, s: TriangulationSolution, sight: Pixel, at: float) -> None:
+    def draw(self, corners: Array, size: float, s: TriangulationSolution, sight: Pixel, at: float) -> None:
         self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
-        self.figure.draw(cameras.corners, cameras.size)
+        self.figure.draw(corners, size)
         x, y = sight
-        near = cameras.corners.item(0, 2)
+        near = corners.item(0, 2)
         self.pixel.pose(position=(x * near, y * near, near))
-        self.pixel.scale(cameras.size)
+        self.pixel.scale(size)
         far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
         self.end = x * far, y * far, far
         self.ray.stroke((ORIGIN, self.end))

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from geometry.arrays import Array
 from sims.kit.scene.stage import Stage
 from sims.triangulation.params import NAMES, TriangulationParams
-from sims.triangulation.scene_region import SEEN_GAP, SIGMAS, Region, gap_in_words, in_steps
+from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
-from sims.triangulation.solution import METHODS, TriangulationSolution
+from sims.triangulation.solution import METHODS, SIGMAS, TriangulationSolution
 
 RADIUS, HEIGHT = 0.19, 0.36
 """Radius of the glass, and how far above the point it hangs, as parts of the point's depth."""
@@ -20,6 +20,11 @@ LEAST = 1.5
 """Magnification below which it shows nothing more than the scene does."""
 DOT = 0.06
 """Radius of a shape in it, as part of the glass's."""
+BESIDE = {
+    "dlt": ("bottom-center", (0.0, 0.0, 2.0)), "midpoint": ("top-center", (0.0, 0.0, -2.0)),
+    "optimal": ("center-left", (2.0, 0.0, 0.0)),
+}  # fmt: skip
+"""Where the name of each method stands, in radii of its shape: points that are all but one have names side by side."""
 PLACES = 12
 """Decimals of a place: what differs by rounding alone isn't drawn anew."""
 Place = list[float]
@@ -34,7 +39,9 @@ class CloseUp:
         self.string = stage.lines("/closeup/string", "ghost", width=1.2)
         self.rays = stage.strokes("/closeup/rays", ("left", "right", "held"), width=2.0)
         self.shapes = {name: Shape(stage, f"/closeup/{name}", name) for name in METHODS}
-        self.names = {name: stage.label(f"/closeup/{name}/label", NAMES[name]) for name in METHODS}
+        self.names = {
+            name: stage.label(f"/closeup/{name}/label", NAMES[name], anchor=BESIDE[name][0]) for name in METHODS
+        }
         self.true = stage.ball("/closeup/true", 1.0, "held")
         self.highlighted = stage.ball("/closeup/true/lit", 1.0, "held")
         self.highlighted.show(False)
@@ -85,7 +92,7 @@ class CloseUp:
         self.label.pose(position=(0.0, 0.0, 1.15 * radius))
         self.gap_label.pose(position=(0.0, 0.0, -1.15 * radius))
         for name, label in self.names.items():
-            label.pose(position=(0.0, 0.0, (-3.0 if name == "midpoint" else 3.0) * DOT * radius))
+            label.pose(position=[DOT * radius * v for v in BESIDE[name][1]])
 
     def _rays(self, s: TriangulationSolution, origin: Place, times: float, radius: float) -> None:
         if s.closest_points is None:

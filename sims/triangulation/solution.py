@@ -13,10 +13,11 @@ import numpy as np
 from geometry import quaternion
 from geometry import triangulation as tri
 from geometry.arrays import Array
-from geometry.camera import Camera, parallel_rig
-from geometry.epipolar import epipolar_line_left, epipolar_line_right, fundamental
-from sims.kit.frame import HEIGHT, WIDTH
-from sims.triangulation.params import Method, Pixel, TriangulationParams
+from geometry.epipolar import epipolar_line_left, epipolar_line_right
+from sims.triangulation import corners
+from sims.triangulation.holding import Pixel
+from sims.triangulation.params import Method, TriangulationParams
+from sims.triangulation.rig import Rig, rig
 
 METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "dlt": tri.triangulate_dlt,
@@ -24,10 +25,10 @@ METHODS: dict[Method, Callable[..., tri.Triangulation]] = {
     "optimal": tri.triangulate_optimal,
 }
 SAMPLES = 300
-PICTURE_WIDTH = 0.4
-"""Metres that a picture is wide where it stands in the scene."""
-BODY_ROOM, PICTURE_ROOM, LARGEST = 0.25, 0.43, 1.4
-"""Metres of baseline that a camera and its picture need; they are drawn as large as there is room, within a limit."""
+SIGMAS = 3.0
+"""Standard deviations up to which the ellipsoid is drawn."""
+DRAWN = 0.5
+"""Depths of the point, to both sides of it, up to which it is drawn: a longer one would hide the scene."""
 UNSEEN = 1e-9
 """Pixels of noise up to which nothing of it is seen."""
 
@@ -43,17 +44,6 @@ class MethodResult:
     reprojection_rms: float | None = None
     pixel_left: Pixel | None = None
     pixel_right: Pixel | None = None
-
-
-@dataclass(frozen=True)
-class Rig:
-    """Both cameras, their F, and the corners of a picture in its camera's axes where it stands in the scene."""
-
-    left: Camera
-    right: Camera
-    F: Array
-    corners: Array
-    size: float
 
 
 @dataclass(frozen=True)
@@ -74,6 +64,12 @@ class TriangulationSolution:
     """Quaternion that turns X, Y, Z to its axes."""
     depth_sigma: float | None
     parallax_angle: float
+    """Degrees between the lines of sight as the method has them: the mid-point's are the rays, those of the others go
+    to their point."""
+    ray_angle: float
+    """Degrees between both rays."""
+    point_angle: float | None
+    """Degrees, at the result, between the lines to both cameras."""
     in_front: bool
     measured_left: Pixel
     measured_right: Pixel
@@ -88,11 +84,25 @@ class TriangulationSolution:
     sight_left: Pixel
     sight_right: Pixel
     """x and y of the lines of sight at depth 1, in each camera's axes."""
+    equations: Array
+    """A of the linear method's A X = 0: two rows for the left picture, two for the right."""
+    singular_values: Array
+    least_vector: Array
+    """Singular vector of the least of them: the point of the linear method, homogeneous."""
+    matched: corners.Matched | None
+    """The corner of the little world on which both image points are."""
 
     @property
     def depth(self) -> float | None:
         """How far in front of the cameras the point is."""
         return None if self.point is None else float(self.point[1])
+
+    @property
+    def drawn_part(self) -> float:
+        """How much of the ellipsoid's length is drawn."""
+        if self.depth is None or self.ellipsoid_axes is None:
+            return 1.0
+        return min(1.0, DRAWN * self.depth / (SIGMAS * self.ellipsoid_axes.item(0)))
 
     @property
     def vague(self) -> bool:
@@ -102,7 +112,7 @@ class TriangulationSolution:
 
 def solve(p: TriangulationParams) -> TriangulationSolution:
     """All the mathematics of a state."""
-    cameras = rig(p.baseline, p.focal)
+    cameras = rig(p)
     left, right = measured(p)
     found = {name: method(cameras.left, cameras.right, left, right) for name, method in METHODS.items()}
     chosen, middle = found[p.method], found["midpoint"]
@@ -118,9 +128,11 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         ray_gap=float(middle.gap),
         closest_points=_existing(middle.closest),
         disparity=disparity,
-        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal))),
-        **_uncertainty(cameras, point, p.noise if p.noise > UNSEEN else 1.0),
+        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal, p.doffs))),
+        **_uncertainty(cameras, point, sigma_of(p.noise)),
         parallax_angle=math.degrees(float(chosen.parallax)),
+        ray_angle=math.degrees(float(middle.parallax)),
+        point_angle=None if point is None else _angle_at(point, p.baseline),
         in_front=bool(chosen.in_front),
         measured_left=left,
         measured_right=right,
@@ -128,20 +140,17 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         line_right=epipolar_line_right(cameras.F, left),
         target=target,
         true_point=target if p.noise > 0.0 and p.left_uv[1] == p.right_uv[1] else None,
-        cloud=cloud(p.baseline, p.focal, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
-        sight_left=_pair(cameras.left.normalized(left)),
-        sight_right=_pair(cameras.right.normalized(right)),
+        cloud=_cloud(cameras, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
+        sight_left=pair(cameras.left.normalized(left)),
+        sight_right=pair(cameras.right.normalized(right)),
+        **_linear(cameras, left, right),
+        matched=corners.matched(cameras.world, p.left_uv, p.right_uv, p.width, point),
     )
 
 
-@lru_cache(maxsize=256)
-def rig(baseline: float, focal: float) -> Rig:
-    """The cameras of a baseline in metres and a focal length in pixels."""
-    left, right = parallel_rig(baseline, focal)
-    size, width = (min(baseline / room, LARGEST) for room in (BODY_ROOM, PICTURE_ROOM))
-    upright = Camera(left.K, np.eye(4))
-    corners = upright.frustum_corners(WIDTH, HEIGHT, PICTURE_WIDTH * width * focal / WIDTH)
-    return Rig(left, right, fundamental(left, right), corners, size)
+def sigma_of(noise: float) -> float:
+    """Pixels of noise for which it is said how sure the point is: without any, those of one pixel."""
+    return noise if noise > UNSEEN else 1.0
 
 
 def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
@@ -156,18 +165,17 @@ def measured(p: TriangulationParams) -> tuple[Pixel, Pixel]:
 @lru_cache(maxsize=1024)
 def _unit_noise(seed: int) -> tuple[Pixel, Pixel]:
     left, right = tri.pixel_noise(1, seed)[0]
-    return _pair(left), _pair(right)
+    return pair(left), pair(right)
 
 
 NO_POINTS: Array = np.empty((0, 3))
 
 
 @lru_cache(maxsize=64)
-def cloud(baseline: float, focal: float, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
+def _cloud(cameras: Rig, left: Pixel, right: Pixel, noise: float, seed: int) -> Array:
     """Points (n, 3) that pixels with as much noise again would give, as far as they exist; none without noise."""
     if noise == 0.0:
         return NO_POINTS
-    cameras = rig(baseline, focal)
     points = tri.monte_carlo(cameras.left, cameras.right, left, right, noise, SAMPLES, seed)
     return points[np.isfinite(points).all(axis=1)]
 
@@ -176,9 +184,24 @@ def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -
     status = tri.Status(int(found.status)).name.lower()
     if status != "found":
         return MethodResult(None, status)
-    at_left, at_right = (_pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
+    at_left, at_right = (pair(camera.project(found.point)[0]) for camera in (cameras.left, cameras.right))
     a, b = math.dist(at_left, left), math.dist(at_right, right)
     return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
+
+
+def _angle_at(point: Array, baseline: float) -> float:
+    """Degrees at a point between the lines to both cameras, which stand at a height of 1 m."""
+    x, y, z = point.tolist()
+    flat = math.hypot(y, z - 1.0)  # from the line through both cameras
+    return math.degrees(math.atan2(x + 0.5 * baseline, flat) - math.atan2(x - 0.5 * baseline, flat))
+
+
+def _linear(cameras: Rig, left: Pixel, right: Pixel) -> dict[str, Any]:
+    """The equations of the linear method, and their solution with its last entry above 0."""
+    A = tri.dlt_equations(cameras.left, cameras.right, left, right)
+    _, singular, vectors = np.linalg.svd(A)
+    least = vectors[3] if vectors.item(3, 3) >= 0.0 else -vectors[3]
+    return {"equations": A, "singular_values": singular, "least_vector": least}
 
 
 def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, Any]:
@@ -203,6 +226,7 @@ def _positive(value: float) -> float | None:
     return value if value > 0.0 else None
 
 
-def _pair(array: Array) -> Pixel:
+def pair(array: Array) -> Pixel:
+    """Two coordinates as plain numbers."""
     u, v = array.tolist()
     return u, v

@@ -3,13 +3,16 @@ import { reduced, sim } from "./page.js";
 
 const FIRST = 250;
 const LAST = 1500; // within the time that the server waits before it draws
+const INPUTS = new Set(["slide", "enter", "handle", "action", "select", "set"]); // what changes the state
 
 export class Channel {
-  // `greeting()` says what the page holds; `take` gets what comes, and `lost` the code and reason of a channel that ends.
-  constructor(greeting, take, lost) {
+  // `greeting()` says what the page holds; `take` gets what comes, `lost` the code and reason of a channel that ends, and
+  // `goesOn` what is about to change the state.
+  constructor(greeting, take, lost, goesOn) {
     this.greeting = greeting;
     this.take = take;
     this.lost = lost;
+    this.goesOn = goesOn;
     this.socket = null;
     this.retryAfter = FIRST;
   }
@@ -30,6 +33,7 @@ export class Channel {
   }
 
   send(message) {
+    if (INPUTS.has(message.type)) this.goesOn(message);
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 }

@@ -21,6 +21,7 @@ export class Controls {
     for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => this.letGo());
     column.addEventListener("click", (event) => this.click(event.target));
     column.addEventListener("paste", (event) => this.paste(event));
+    column.addEventListener("toggle", ({ target }) => target.dataset.fold && this.fold(target), true);
   }
 
   // ---- sliders
@@ -67,13 +68,19 @@ export class Controls {
   }
 
   enter(name, value) {
-    right(control(name));
     this.channel.send({ type: "enter", name, text: value });
   }
 
   change(input) {
     if (input.dataset.choice) this.enter(input.dataset.choice, input.value);
     else if (input.dataset.switch) this.enter(input.dataset.switch, input.checked ? "1" : "0");
+  }
+
+  // A fold that is a choice of the state was opened or closed: by a hand, unless it shows what is so.
+  fold({ open, dataset }) {
+    const known = this.known[dataset.fold];
+    if (known === undefined || open === (known === dataset.open) || sim.watching) return;
+    this.enter(dataset.fold, open ? dataset.open : dataset.closed);
   }
 
   paste(event) {
@@ -137,6 +144,7 @@ export class Controls {
 
   show(values) {
     Object.assign(this.known, values);
+    for (const name of Object.keys(values)) for (const fold of inputs("fold", name)) fold.open = values[name] === fold.dataset.open;
     if (this.pace.idle) this.settle();
   }
 
@@ -173,6 +181,15 @@ export class Controls {
     for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
     this.settle();
     return true;
+  }
+
+  // What was refused is past: each box shows what is so again, but for the one that was corrected.
+  forgive(name) {
+    for (const line of column.querySelectorAll(".s3-wrong:not([hidden])")) {
+      const boxes = [...line.parentElement.querySelectorAll("[data-box][aria-invalid]")];
+      right(line.parentElement);
+      for (const box of boxes) if (box.dataset.box !== name) this.fill(box, text(this.known[box.dataset.box]));
+    }
   }
 }
 

@@ -38,6 +38,12 @@ export class Files {
     if (!document.querySelector(".s3-upload")?.checkVisibility()) this.words.notify(words);
   }
 
+  refused(words) {
+    this.say(`⚠ ${words} Nothing has changed.`);
+    const fold = document.querySelector(".s3-upload")?.closest("details");
+    if (fold) fold.open = true; // where the words stay when the notice has gone
+  }
+
   giveUp() {
     this.request.abort();
   }
@@ -45,11 +51,11 @@ export class Files {
   upload(file) {
     const size = `${(file.size / 1e6).toFixed(1)} MB`;
     if (file.size > sim.files.largest) {
-      this.say(`⚠ “${file.name}” has ${size}; at most ${sim.files.largest / 1e6} MB are taken. Nothing has changed.`);
+      this.refused(`“${file.name}” has ${size}; at most ${sim.files.largest / 1e6} MB are taken.`);
       return;
     }
     const request = (this.request = new XMLHttpRequest());
-    const failed = (words) => this.say(`⚠ “${file.name}”: ${words} Nothing has changed.`);
+    const failed = (words) => this.refused(`“${file.name}”: ${words}`);
     request.open("POST", `${sim.place}file?name=${encodeURIComponent(file.name)}`);
     request.upload.onprogress = (event) => this.say(`Sending “${file.name}”, ${size}…`, event.loaded / event.total * 0.999);
     request.upload.onload = () => this.say(`Reading “${file.name}”, ${size}…`, 1);

@@ -23,7 +23,9 @@ const LOOKING = 30; // milliseconds between two looks at whether the scene is th
 class Page {
   constructor() {
     this.address = new Address();
-    this.channel = new Channel(() => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why));
+    this.channel = new Channel(
+      () => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why), ({ name }) => this.goOn(name),
+    );
     this.words = new Words();
     this.trouble = new Trouble();
     this.work = new Work(() => this.channel.send({ type: "cancel" }));
@@ -31,7 +33,7 @@ class Page {
     this.highlight = new Highlight(this.channel);
     this.controls = new Controls(this.channel, this.pace);
     this.handles = new Handles(this.pace, this.highlight);
-    this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight);
+    this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.goOn());
     this.files = new Files(this.words);
     this.host = new Host(this.channel, this.address);
     this.height = new Height(this.host);
@@ -92,6 +94,12 @@ class Page {
   fail({ message, errors, control }) {
     if (!control || !this.controls.refuse(control, message)) this.words.notify("⚠ " + message);
     this.host.post({ type: "sim3:error", message, errors });
+  }
+
+  // Somebody goes on: what was refused before is past.
+  goOn(name) {
+    this.controls.forgive(name);
+    this.words.dismiss();
   }
 
   goBlind() {

@@ -29,8 +29,8 @@ export class Paste {
     this.say("Reading…", "");
     try {
       const answer = await fetch(`${sim.place}paste`, { method: "POST", body: text });
-      if (answer.ok) this.say("Taken.", "");
-      else this.say("", (await answer.json()).detail);
+      const { said, detail } = await answer.json();
+      this.say(said ?? "", detail ?? "");
     } catch {
       this.say("", "The connection broke off. Nothing has changed.");
     }

@@ -7,7 +7,8 @@ export class Toolbar {
     this.address = address;
     this.words = words;
     const does = {
-      share: () => this.share(),
+      share: () => this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state"),
+      copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
@@ -27,27 +28,28 @@ export class Toolbar {
     }, true);
   }
 
-  async share() {
-    const link = this.address.shared;
+  async copy(words, done, title) {
     try {
       // Frames of other sites may not; asking all the same would leave an error in the console.
       if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
-      await navigator.clipboard.writeText(link);
-      this.words.notify("Link copied. It opens this sim in exactly this state and view.");
+      await navigator.clipboard.writeText(words);
+      this.words.notify(done);
     } catch {
-      dialog("Link to this state", '<p><input class="s3-link" readonly aria-label="Link" value=""></p>');
+      dialog(title, `<p><input class="s3-link" readonly aria-label="${title}" value=""></p>`);
       const field = document.querySelector(".s3-link");
-      field.value = link;
+      field.value = words;
       field.select();
     }
   }
 }
 
-// A picture covers the scene, or goes back to its place; it stays live.
+// A picture covers the scene, or goes back to its place; it stays live. Two that stand side by side do so together.
 function enlarge(figure) {
-  const large = !figure.classList.contains("s3-full");
+  const pair = !figure.matches(".s3-wide") && figure.parentElement.querySelectorAll(".s3-pane:not(.s3-wide)").length > 1;
+  const shown = pair ? figure.parentElement : figure;
+  const large = !shown.classList.contains("s3-full");
   document.querySelector(".s3-full")?.classList.remove("s3-full");
-  figure.classList.toggle("s3-full", large);
+  shown.classList.toggle("s3-full", large);
   document.documentElement.style.setProperty("--s3-left", `${column.offsetLeft || innerWidth}px`);
 }
 

@@ -15,7 +15,7 @@ export function fit() {
   const target = sim.view.slice(3);
   const away = sim.view.slice(0, 3).map((v, i) => v - target[i]);
   const half = Math.tan(sim.field / 2) * Math.min(1, Math.max(scene.clientWidth, 1) / Math.max(scene.clientHeight, 1));
-  const scale = sim.radius / Math.sin(Math.atan(half)) / Math.hypot(...away);
+  const scale = sim.radius ? sim.radius / Math.sin(Math.atan(half)) / Math.hypot(...away) : 1;
   return [...away.map((v, i) => target[i] + v * scale), ...target];
 }
 
@@ -156,7 +156,7 @@ export class View {
   }
 
   get athome() {
-    return Math.hypot(...this.camera.map((v, i) => v - this.home[i])) < 0.01 * sim.radius;
+    return Math.hypot(...this.camera.map((v, i) => v - this.home[i])) < (0.01 * sim.radius || 1e-3);
   }
 
   keep() {

@@ -30,6 +30,10 @@ export class Words {
     this.notice.textContent = text;
     this.notice.hidden = false;
     clearTimeout(this.hiding);
-    this.hiding = setTimeout(() => (this.notice.hidden = true), SEEN);
+    this.hiding = setTimeout(() => this.dismiss(), SEEN);
+  }
+
+  dismiss() {
+    this.notice.hidden = true;
   }
 }

@@ -137,6 +137,23 @@ def test_what_is_shown_can_be_taken_home(local: Local) -> None:
     assert local.http.get(f"{desk.path}result/other.ply").status_code == 404
 
 
+def test_two_files_of_a_registration_are_kept_together(local: Local) -> None:
+    desk = Desk(local)
+    assert desk.bring("first.ply", FILE).status_code == 200
+    desk.change({"process": "register"})
+    first = desk.params.file
+    assert desk.bring("second.ply", FILE).status_code == 200
+    second = desk.params.second
+    assert (desk.params.file, set(desk.session.uploads)) == (first, {first, second})
+    assert desk.bring("another.ply", FILE).status_code == 200
+    assert set(desk.session.uploads) == {first, desk.params.second}
+    assert desk.params.second != second
+    desk.change({"process": "none"})
+    assert desk.bring("alone.ply", FILE).status_code == 200
+    assert desk.params.second is None
+    assert desk.session.uploads == {desk.params.file: len(FILE)}
+
+
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
@@ -155,7 +172,7 @@ def test_a_bad_file_is_refused_in_words_and_changes_nothing(local: Local, name: 
     assert words in answer.json()["detail"]
     assert answer.json()["detail"][0].isupper()
     assert desk.params == before
-    assert not desk.session.uploaded
+    assert not desk.session.uploads
 
 
 @pytest.mark.parametrize(
@@ -439,4 +456,4 @@ def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) 
     assert local.http.get("/healthz").status_code == 200
     assert desk.params.dataset == "room"
     wait_for(lambda: set(clouds._uploads) == before, "the file to be forgotten")
-    assert not desk.session.uploaded
+    assert not desk.session.uploads

@@ -9,7 +9,7 @@ import numpy as np
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from sims.camera import SIM as CAMERA
-from sims.camera.world import PLACES
+from sims.kit.world import PLACES
 from tests.app.conftest import Local
 from tests.app.page import Page
 

@@ -23,6 +23,7 @@ from app.rooms.keys import new_key, room_of
 from app.rooms.registry import Full, Sessions
 from app.rooms.session import Session
 from app.rooms.solver import workers
+from app.routes.links import controls
 from app.sockets.commands import Commands
 from sims import by_slug
 from sims.kit.fields import NumberBox, OptionalNumber, Slider, Vector
@@ -322,6 +323,16 @@ def test_a_button_leads_to_the_next_state() -> None:
     run(test)
 
 
+def test_a_button_is_known_by_the_name_that_it_had_before() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.act("dye")
+        assert room.session.params == ToyParams(kind="blue")
+        assert "dye" in controls(room.session.sim), "links that show this button alone"
+
+    run(test)
+
+
 def test_reset_leads_back_to_the_state_of_the_link() -> None:
     async def test() -> None:
         start = ToyParams(size=42, kind="blue")
@@ -434,6 +445,45 @@ def test_what_a_motion_says_ends_with_it() -> None:
         await room.drawn()
         assert heard[-1]["parts"]["caption"] == "Make it grow."
         assert room.session.state()["text"] == "Size 3, double 6."
+
+    run(test)
+
+
+def slowly(before: ToyParams, after: ToyParams) -> Iterator[Step]:
+    if before.kind != after.kind:
+        yield Step({"size": before.size}, 0.0, words="Another colour.")
+        yield Step({"size": after.size + 10.0}, 0.2)
+        yield Step({"size": after.size}, 0.0)
+
+
+def easing() -> Sim[Any, Any]:
+    return dataclasses.replace(toy()[0], eases=slowly)
+
+
+def test_what_is_chosen_is_seen_to_come_about() -> None:
+    async def test() -> None:
+        room = Room(sim=easing(), start=ToyParams(size=20))
+        room.session.enter("size", "40")
+        assert room.session.motion.task is None, "nothing to be seen"
+        room.session.enter("kind", "blue")
+        assert room.session.params == ToyParams(size=40, kind="blue")
+        await room.moved()
+        await room.drawn()
+        assert max(size for size, _ in room.eye.seen) > 40.0
+        assert room.session.params == ToyParams(size=40, kind="blue")
+
+    run(test)
+
+
+def test_nothing_is_eased_for_links_and_where_motion_is_reduced() -> None:
+    async def test() -> None:
+        room = Room(sim=easing())
+        room.session.change({"kind": "blue"}, live=False)
+        assert room.session.motion.task is None
+        room.session.motion.reduced = True
+        room.session.enter("kind", "red")
+        assert room.session.params == ToyParams()
+        assert room.session.motion.task is None
 
     run(test)
 

@@ -29,7 +29,7 @@ def page(http: httpx.Client, sim: AnySim, query: str = "") -> str:
 @each_sim
 def test_every_sim_has_its_words_numbers_and_pictures(http: httpx.Client, sim: AnySim) -> None:
     text = page(http, sim)
-    params = sim.params()
+    params = sim.params.from_query(())
     solution = sim.solve(params)
     main = text.partition("<main")[2].partition("</main>")[0]
     assert not mistakes(text)

@@ -94,7 +94,7 @@ def toy(seconds: float = 0.0, *, heavy: bool = False) -> tuple[Sim[Any, Any], So
         actions=(
             Action("grow", "Grow", "Slowly", grow),
             Action("explain", "Explain", "In words", explain),
-            Action("paint", "Paint", "The other one", paint),
+            Action("paint", "Paint", "The other one", paint, aliases=("dye",)),
             Action("burst", "Burst", "Too much", lambda p: {"size": 1000.0}),
         ),
         handles={"/grip": lambda p, place: {"size": place[0]}},

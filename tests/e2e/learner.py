@@ -421,9 +421,14 @@ class Learner:
 
     def reads(self, name: str, value: npt.ArrayLike, digits: int = 3) -> bool:
         """Whether the read-outs show a number, vector or matrix under a name."""
-        formulas: list[list[str]] = self.frame.evaluate(FORMULAS)
+        formulas = self.formulas()
         wanted = [figure(v, digits) for v in np.ravel(np.asarray(value, dtype=float)).tolist()]
         return [name, *wanted] in formulas
+
+    def formulas(self) -> list[list[str]]:
+        """The name and the numbers of each formula in the column."""
+        found: list[list[str]] = self.frame.evaluate(FORMULAS)
+        return found
 
     def spoken(self) -> str:
         """What the live region says to those who listen."""

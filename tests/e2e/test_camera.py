@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pytest
+from scipy.spatial.transform import Rotation
 
 from sims.camera.solution import LIFT
-from sims.camera.world import PLACES, SUBJECT
+from sims.kit.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 
@@ -45,11 +47,16 @@ def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: C
     learner.choose("projection", "orthographic")
     flat = agree(learner, projection="orthographic")
     assert flat["P"][2] == [0, 0, 0, 1]
-    learner.type("tilt", "90")
-    agree(learner, tilt=90)
+    assert flat["scale"] == 100
+    learner.type("position", "-18,36", box=2)
+    assert agree(learner, position=[0, -18.36, 1.2])["scale"] == 100
+    assert learner.control("textbox", "position.1").input_value() == "−18.36"
+    learner.choose("projection", "weak")
+    learner.type("position", "20", box=2)
+    agree(learner, position=[0, 20, 1.2])
     learner.says("No picture: its scale comes from")
     learner.press("Reset")
-    agree(learner, fx=600, fy=300, tilt=0, projection="perspective")
+    agree(learner, fx=600, fy=300, position=[0, -4, 1.2], projection="perspective")
     learner.press_keys("tilt", "ArrowLeft", "ArrowLeft")
     agree(learner, tilt=-2)
     learner.choose("projection", "weak")
@@ -109,6 +116,25 @@ def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> No
     agree(learner, cx=330)
 
 
+def test_picture_matrices_controls_and_actions_are_seen_together(classroom: Classroom) -> None:
+    learner = classroom.open_column("camera/embed", size={"width": 1280, "height": 800})
+    agree(learner, fx=600)
+    seen = {name: box(learner.frame.locator(selector)) for name, selector in {
+        "chain": ".s3-chain", "picture": "svg[data-pane=picture]", "K": ".s3-key .s3-formula >> nth=0",
+        "pose": ".s3-key .s3-formula >> nth=1", "focal length": "[data-control=fx]", "tilt": "[data-control=tilt]",
+        "dolly zoom": "[data-act=dolly-zoom]",
+    }.items()}  # fmt: skip
+    assert seen["picture"]["width"] >= 480
+    tops = [place["y"] for name, place in seen.items() if name != "pose"]
+    assert tops == sorted(tops), "the matrices stand between the picture and the controls that change them"
+    assert seen["pose"]["y"] == seen["K"]["y"]
+    assert seen["chain"]["height"] < 40, "the chain is one line with its words above it"
+    assert max(place["y"] + place["height"] for place in seen.values()) <= 800
+    learner.frame.locator("[data-slide=tilt]").hover()
+    lit = "[...document.querySelectorAll('.s3-key mtd.s3-highlighted')].length"
+    learner.until(lambda: learner.frame.evaluate(lit) == 9, patience=5)
+
+
 def test_the_view_steps_back_for_a_camera_that_leaves_it_and_keeps_what_somebody_chose(classroom: Classroom) -> None:
     learner = classroom.open("camera/embed")
 
@@ -147,6 +173,30 @@ def at_rest(learner: Learner) -> Array:
     return before
 
 
+def test_the_scene_is_seen_through_the_camera_and_from_where_it_was_again(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed?tilt=-10&roll=25")
+    first = np.array(learner.until(lambda: at_rest(learner)))
+    learner.find("switch", "Look through the camera").click()
+
+    def through(**expected: Any) -> None:
+        solution = learner.solution(through=True, **expected)
+        camera = learner.sockets.camera
+        np.testing.assert_allclose(camera["position"], solution["center"], rtol=0, atol=1e-5)
+        turned = Rotation.from_quat(camera["wxyz"], scalar_first=True).as_matrix()
+        np.testing.assert_allclose(turned, np.transpose(solution["R"]), rtol=0, atol=1e-5)
+        frustum = solution["frustum"]
+        assert np.tan(camera["fov"] / 2) >= abs(frustum["corners"][2][1]) / frustum["depth"]
+
+    learner.until(through)
+    learner.press_keys("pan", "PageUp")
+    learner.until(lambda: through(pan=10))
+    assert "view" not in learner.address
+    learner.find("switch", "Look through the camera").click()
+    learner.until(lambda: np.testing.assert_allclose(learner.sockets.camera["position"], first, atol=1e-4))
+    assert learner.sockets.camera["fov"] == pytest.approx(0.7, abs=1e-6)
+    assert not learner.params["through"]
+
+
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:
     learner = classroom.open_column("camera/embed")
     wanted = agree(learner)["subject"]["height"]
@@ -159,7 +209,7 @@ def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom:
     for params in told:
         assert abs(height(params) - wanted) < 0.5
     assert end["center"][1] > -1.5
-    learner.press("Look at the subject")
+    learner.press("Look at the house")
     learner.until(lambda: np.testing.assert_allclose(agree(learner)["subject"]["pixel"], [320, 240], atol=1e-6))
 
 

@@ -93,6 +93,25 @@ def test_what_cannot_be_taken_stays_with_the_reason(column: Open) -> None:
     held(learner, yaw=13)
 
 
+def test_what_was_refused_goes_with_the_next_good_input(column: Open) -> None:
+    learner = column("euler-angles/embed?yaw=12")
+    wrong = learner.frame.locator('[data-control="yaw"] .s3-wrong')
+    inputs: list[Callable[[], None]] = [
+        lambda: learner.press_keys("roll", "ArrowRight"),
+        lambda: learner.type("pitch", "21"),
+        lambda: learner.choose("order", "xyz"),
+        lambda: learner.press("Reset"),
+    ]
+    for go_on in inputs:
+        learner.type("yaw", "400")
+        wrong.wait_for()
+        assert shown(learner, "yaw") == "400"
+        go_on()
+        wrong.wait_for(state="hidden")
+        assert learner.control("textbox", "yaw").get_attribute("aria-invalid") is None
+        learner.until(lambda: shown(learner, "yaw") == "12")
+
+
 def test_three_numbers_are_pasted_at_once(column: Open) -> None:
     learner = column("camera/embed")
     field = learner.control("textbox", "position.0")
@@ -134,7 +153,7 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
     mouse.move(x, y)
     mouse.down()
-    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture")):
+    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture onto a corner")):
         mouse.move(x + far, y + far / 4, steps=3)
         learner.until(lambda words=words: words in (learner.frame.locator(".s3-caption").text_content() or ""))  # type: ignore[misc]
         scale = before["width"] / 640
@@ -193,6 +212,10 @@ def test_parts_that_change_keep_the_focus_and_what_is_open(column: Open) -> None
     assert frame.get_by_text("In pixel widths.").is_visible()
 
 
+POSED = ("li", "position pan tilt roll")
+"""The step of a chain to which position and angles lead."""
+
+
 def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) -> None:
     learner = column("camera/embed")
     frame = learner.frame
@@ -201,12 +224,12 @@ def test_a_control_and_what_it_changes_are_highlighted_together(column: Open) ->
         return {(tag, link) for tag, link in frame.evaluate(LIT)}
 
     frame.locator('[data-control="fx"]').hover()
-    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx")})
+    learner.until(lambda: lit() == {("div", "fx"), ("mtd", "fx"), ("li", "fx fy cx cy skew")})
     frame.locator('mtd[data-link="position"]').first.hover()
-    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position")})
+    learner.until(lambda: lit() == {("div", "position"), ("mtd", "position"), POSED})
     learner.control("slider", "tilt").focus()
     learner.page.mouse.move(5, 5)
-    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll")})
+    learner.until(lambda: lit() == {("div", "tilt"), ("mtd", "pan tilt roll"), POSED})
 
 
 def test_a_picture_is_enlarged_stays_live_and_goes_back(column: Open) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sims.kit.readout import figure
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner
 from tests.e2e.picture import Picture
@@ -25,14 +26,30 @@ def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
         tips = np.column_stack([learner.scene.points(path)[0, 1] for path in AXES])
         np.testing.assert_allclose(tips / np.linalg.norm(tips, axis=0), solution["basis"], rtol=0, atol=1e-6)
         assert learner.reads("h", solution["homogeneous"], 2)
-        name = f"T{learner.params['to']} {learner.params['convention']}"
-        assert learner.reads(name, np.array(solution["matrix"]), 0)
+        assert product(learner)[4:] == [figure(v, 2) for name in VECTORS for v in vector(solution, name)]
         assert learner.reads("detT", solution["determinant"], 0)
         place = solution["point_world"] or solution["tip"]
         np.testing.assert_allclose(held(learner), place, rtol=0, atol=1e-6)
         return solution
 
     return learner.until(said)
+
+
+def product(learner: Learner) -> list[str]:
+    """The numbers of T's last column and of the vectors in its product, as the column shows them."""
+    shown: list[str] = learner.frame.evaluate(
+        "() => [...document.querySelector('.s3-key math').querySelectorAll('mn')].map(each => each.textContent)"
+    )
+    return [*shown[3:16:4], *shown[16:]]
+
+
+VECTORS = ("homogeneous", "direction", "homogeneous_to", "direction_to")
+
+
+def vector(solution: dict[str, Any], name: str) -> list[float]:
+    """One of them; the direction is the point's three numbers with w = 0."""
+    found: list[float] = [*solution["homogeneous"][:3], 0.0] if name == "direction" else solution[name]
+    return found
 
 
 def held(learner: Learner) -> Array:
@@ -54,7 +71,7 @@ def shown(learner: Learner) -> None:
 
 
 def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed?show_rule=0")
+    learner = classroom.open("coordinate-frames/embed?convention=opengl&show_rule=0")
     agree(learner, convention="opengl", handedness=None)
     shown(learner)
 
@@ -102,7 +119,7 @@ def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> No
 
 
 def test_each_control_of_coordinate_frames_answers(classroom: Classroom) -> None:
-    learner = classroom.open_column("coordinate-frames/embed")
+    learner = classroom.open_column("coordinate-frames/embed?to=opengl")
     learner.type("point", "-0.5", box=1)
     learner.type("point", "0.25", box=3)
     agree(learner, point=[-0.5, 0.8, 0.25])
@@ -120,9 +137,13 @@ def test_each_control_of_coordinate_frames_answers(classroom: Classroom) -> None
 
     learner.press("Animate the rule")
     learner.until(lambda: learner.params["show_rule"] and 0 < learner.params["rule"] < 1)
-    agree(learner, show_rule=True, rule=1)
+    learner.says("Curl them towards Y.")
+    agree(learner, show_rule=True, rule=1, lit=None)
+    learner.type("origin", "0.5", box=2)
+    solution = agree(learner, origin=[0, 0.5, 0])
+    assert product(learner)[:4] == [figure(-v, 2) for v in solution["origin_world"][:1]] + ["−0.50", "0.00", "1.00"]
     learner.press("Reset")
-    agree(learner, point=[1, 0.8, 0.6], rule=1, grid_xy=False, show_rule=True)
+    agree(learner, origin=[0, 0, 0], point=[1, 0.8, 0.6], rule=1, grid_xy=False, show_rule=True)
 
 
 def test_w_goes_to_zero(classroom: Classroom) -> None:
@@ -141,3 +162,35 @@ def test_w_goes_to_zero(classroom: Classroom) -> None:
     learner.type("point", "0", box=3)
     learner.says("neither a point nor a direction")
     assert not learner.scene.visible("/point")
+
+
+def test_it_opens_with_two_frames_whose_product_is_beside_the_scene(classroom: Classroom) -> None:
+    for width, height in ((1280, 800), (700, 600), (560, 315)):
+        learner = classroom.open_column("coordinate-frames/embed", size={"width": width, "height": height})
+        solution = agree(learner, convention="ros", to="camera")
+        assert np.linalg.norm(np.subtract(solution["homogeneous_to"], solution["direction_to"])[:3]) > 0.5
+        assert "to=" not in learner.address
+        shown = learner.frame.evaluate(
+            "() => (({right, bottom}) => [right, bottom])"
+            "(document.querySelector('.s3-key math').lastElementChild.getBoundingClientRect())"
+        )
+        assert shown[0] <= width
+        assert shown[1] <= height
+        learner.says("Pull X′ Y′ Z′ by their ring")
+
+
+def test_the_second_frame_is_pulled_by_its_ring(classroom: Classroom) -> None:
+    learner = classroom.open("coordinate-frames/embed")
+    before = agree(learner)
+    learner.pull(learner.place(before["origin_world"]), 40, 30)
+    learner.until(lambda: learner.params["origin"] != [0.2, -1.2, 0])
+    after = agree(learner)
+    np.testing.assert_allclose(after["point_world"], before["point_world"], atol=1e-12)
+    assert after["direction_to"] == before["direction_to"]
+    assert np.abs(np.subtract(after["homogeneous_to"], before["homogeneous_to"])).max() > 0.05
+
+    def drawn() -> None:
+        picture = Picture(learner)
+        assert picture.shows("held", after["origin_world"], within=6), picture.around(after["origin_world"])
+
+    learner.until(drawn)

@@ -86,6 +86,17 @@ def test_a_slider_turns_the_aircraft_from_hand_to_pixel(classroom: Classroom) ->
     agree(learner, pitch=-30, roll=10)
     shown_at_tips(learner, "z")
 
+    learner.open("euler-angles/embed?yaw=40&pitch=-20")
+    for grip, name, (dx, dy) in (("/held_first", "yaw", (40, -10)), ("/held_second", "pitch", (5, 40))):
+        before, place = dict(learner.params), learner.place_of(grip)
+        learner.pull(place, dx, dy)
+        learner.until(lambda: learner.params[name] != before[name])  # noqa: B023
+        agree(learner, **{other: before[other] for other in {"yaw", "pitch", "roll"} - {name}})
+    x, y = learner.place_of("/held_nose")
+    learner.pull((x, y), -20, -30)
+    learner.until(lambda: abs(learner.place_of("/held_nose")[1] - (y - 30)) < 15)
+    agree(learner)
+
     learner.open("euler-angles/embed?yaw=40&roll=-25")
     learner.type("pitch", "90")
     agree(learner, pitch=90)
@@ -107,8 +118,12 @@ def test_each_control_answers_to_keyboard_pointer_and_typing(classroom: Classroo
         learner.page.keyboard.press("Enter")
         agree(learner, yaw=yaw)
 
+    assert sliders(learner) == ["yaw", "pitch", "roll", "progress"]
+    learner.control("combobox", "order").focus()
     learner.choose("order", "xyz")
     agree(learner, order="xyz", yaw=-120, pitch=22, roll=179)
+    assert sliders(learner) == ["roll", "pitch", "yaw", "progress"], "they don't stand in the order of the turns"
+    assert learner.control("combobox", "order").evaluate("node => node === document.activeElement")
     learner.choose("frame", "extrinsic")
     agree(learner, frame="extrinsic")
     learner.choose("order", "zxz")
@@ -121,9 +136,45 @@ def test_each_control_answers_to_keyboard_pointer_and_typing(classroom: Classroo
     learner.press("Reset")
     agree(learner, order="zyx", frame="intrinsic", yaw=45, pitch=20, roll=10, progress=3)
 
+    assert sliders(learner) == ["yaw", "pitch", "roll", "progress"]
     learner.slide("progress", 1.5)
     learner.until(lambda: abs(learner.params["progress"] - 1.5) < 0.2)
     agree(learner, yaw=45)
+    assert learner.reads("RzRy", learner.solved()["R_progress"])
+
+
+def sliders(learner: Learner) -> list[str]:
+    """The sliders from top to bottom, by their parameters."""
+    found: list[str] = learner.frame.evaluate(
+        "() => [...document.querySelectorAll('[data-slide]')].map((node) => node.dataset.slide)"
+    )
+    return found
+
+
+def test_a_pasted_rotation_is_recognised_asked_about_and_copied(classroom: Classroom) -> None:
+    learner = classroom.open_column("euler-angles/embed", permissions=["clipboard-read", "clipboard-write"])
+    text = learner.frame.locator("#paste")
+    learner.unfold(text)
+    text.fill("0.5 0.5 0.5 0.5")
+    learner.press("Use this")
+    learner.says("is w the first of these four numbers or the last?")
+    agree(learner, yaw=30, pitch=20, roll=10)
+    text.fill("wxyz 0.5 0.5 -0.5 0.5")
+    learner.press("Use this")
+    learner.says("Read as a quaternion, w first.")
+    assert text.input_value() == "wxyz 0.5 0.5 -0.5 0.5", "what was pasted is lost"
+    wanted = Rotation.from_quat([0.5, -0.5, 0.5, 0.5]).as_matrix()
+    found = learner.until(lambda: turned(learner))
+    assert found is not None
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-9)
+    learner.press("Copy: Quaternion, w first (Eigen, Blender)")
+    learner.says("Copied.")
+    assert learner.frame.evaluate("() => navigator.clipboard.readText()") == "wxyz 0.5, 0.5, -0.5, 0.5"
+
+
+def turned(learner: Learner) -> Array | None:
+    """The rotation, once it isn't that of the start."""
+    return None if learner.params["yaw"] == 30 else agree(learner)
 
 
 def test_gimbal_lock_is_said_and_shown(classroom: Classroom) -> None:

@@ -143,6 +143,19 @@ def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_pat
     assert learner.solved()["points_in"] == 2
 
 
+def test_a_bad_file_that_is_dropped_is_refused_where_one_sees_it(classroom: Classroom) -> None:
+    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5", size=SMALL)
+    bad = "() => { const all = new DataTransfer(); all.items.add(new File(['ply'], 'bad.ply')); return all; }"
+    status = learner.frame.locator("[data-s3-file-status]")
+    assert not status.is_visible(), "its fold is closed"
+    learner.witness.expect("422")
+    dropped = learner.page.evaluate_handle(bad)
+    learner.page.dispatch_event("body", "drop", {"dataTransfer": dropped})
+    learner.frame.locator(".s3-notice", has_text="Nothing has changed").wait_for()
+    status.wait_for()
+    assert "bad.ply" in (status.text_content() or ""), "and it stays there when the notice has gone"
+
+
 def agree_on_file(learner: Learner) -> dict[str, Any]:
     assert learner.params["dataset"] == "file"
     return learner.solved()

@@ -107,7 +107,7 @@ def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themsel
     row.hover()
     lit(watcher, "near-post")
     row.click()
-    teacher.press("Look at the subject")
+    teacher.press("Look at the house")
     watcher.until(lambda: watcher.params["pan"] != 0)
     watcher.sees(selected="roof-near")
     lit(watcher, "near-post")

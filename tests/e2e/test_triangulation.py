@@ -139,15 +139,28 @@ def test_the_points_are_dragged_in_the_pictures(classroom: Classroom) -> None:
         focused = frame.evaluate("document.activeElement.dataset.handle")
         assert focused == "right_uv", "the focus stays on the point when the picture is drawn anew"
     learner.page.keyboard.press("Shift+ArrowDown")
-    agree(learner, right_uv=[320.9, 210])
+    depth = agree(learner, right_uv=[320.9, 210])["point"][1]
+
+    dot, plot = frame.locator("[data-handle=depth]"), frame.locator("svg[data-pane=plot]")
+    at, scale = box(dot.locator(".s3-core")), min(box(plot)["width"] / 320, box(plot)["height"] / 160)
+    learner.pull((at["x"] + at["width"] / 2, at["y"] + at["height"] / 2), 20, -15)
+    farther = depth + 20 / scale * 10 / 262
+    learner.until(lambda: np.testing.assert_allclose(learner.solved()["point"][1], farther, atol=0.06))
+    agree(learner)
+    dot.press("ArrowLeft")
+    learner.until(lambda: np.testing.assert_allclose(learner.solved()["point"][1], farther - 10 / 262, atol=0.06))
 
 
 def test_each_control_of_triangulation_answers(classroom: Classroom) -> None:
     learner = classroom.open_column("triangulation/embed")
     learner.press_keys("baseline", "ArrowRight")
     first = agree(learner, baseline=0.61)
+    np.testing.assert_allclose(first["point"], [0.3, 4, 1.2], atol=1e-9)
+    learner.press("Reset")
+    agree(learner, baseline=0.6)
+    learner.choose("hold", "pixels")
     learner.type("focal", "800")
-    agree(learner, focal=800)
+    assert agree(learner, focal=800, hold="pixels")["depth_sigma"] > first["depth_sigma"]
     learner.type("left_uv", "400.5", box=1)
     learner.type("right_uv", "215", box=2)
     agree(learner, left_uv=[400.5, 210], right_uv=[320, 215])

@@ -10,7 +10,17 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from geometry import Array, GeometryError
-from geometry.euler import FRAMES, ORDERS, euler_to_matrix, factors, is_proper, lock_distance, matrix_to_euler
+from geometry.euler import (
+    FRAMES,
+    ORDERS,
+    euler_to_matrix,
+    factors,
+    is_proper,
+    lock_distance,
+    lock_sign,
+    matrix_to_euler,
+    other_triple,
+)
 from geometry.rotations import axis_rotation, is_rotation
 from tests.geometry.strategies import EXACT, angles, rotations
 
@@ -185,3 +195,37 @@ def test_bad_numbers_are_refused() -> None:
     for R in (np.zeros((3, 3)), -np.eye(3), np.full((3, 3), math.nan)):
         with pytest.raises(GeometryError, match="R is"):
             matrix_to_euler(R, "zyx", "intrinsic")
+
+
+@given(triples)
+def test_at_lock_one_combination_of_first_and_third_is_left(triple: Triple) -> None:
+    """It alone counts, by SciPy: moving both so that it stays moves nothing, and it stays only with that sign."""
+    first, move, third = triple
+    for order, frame in CONVENTIONS:
+        for lock in locks(order):
+            sign = lock_sign(lock, order, frame)
+            R = scipys((first, lock, third), order, frame)
+            same = scipys((first - sign * move, lock, third + move), order, frame)
+            np.testing.assert_allclose(same, R, rtol=0, atol=1e-9, err_msg=f"{order} {frame} {lock}")
+            other = scipys((first + 0.1 * sign, lock, third + 0.1), order, frame)
+            assert np.abs(other - R).max() > 0.01, f"{order} {frame} {lock}"
+
+
+def test_the_sign_at_lock_is_the_textbooks() -> None:
+    assert lock_sign(math.pi / 2, "zyx", "intrinsic") == -1  # ψ − φ
+    assert lock_sign(-math.pi / 2, "zyx", "intrinsic") == 1
+    assert lock_sign(0.0, "zxz", "intrinsic") == 1
+    with pytest.raises(GeometryError):
+        lock_sign(0.0, "zzz", "intrinsic")
+
+
+@given(triples)
+def test_two_triples_give_one_rotation(triple: Triple) -> None:
+    for order, frame in CONVENTIONS:
+        other = other_triple(triple, order)
+        np.testing.assert_allclose(
+            scipys(tuple(other.tolist()), order, frame), scipys(triple, order, frame), rtol=0, atol=1e-9
+        )
+        assert max(abs(other[0]), abs(other[2])) <= math.pi + 1e-12
+    batch = other_triple([triple, triple], "zyx")
+    np.testing.assert_array_equal(batch[0], batch[1])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from geometry import Array, GeometryError, frames
 from geometry.rotations import is_rotation
@@ -85,6 +86,35 @@ def test_change_of_basis_is_a_rotation_only_between_bases_of_one_handedness(a: A
     same = frames.handedness(a) == frames.handedness(b)
     assert np.linalg.det(T) == (1.0 if same else -1.0)
     assert bool(is_rotation(T[:3, :3])) is same
+
+
+@given(st.one_of(bases, rotations), st.one_of(bases, rotations), vectors(3, 10.0), vectors(3, 10.0), st.integers(0, 1))
+def test_the_other_frame_begins_at_its_origin(a: Array, b: Array, origin: Array, place: Array, w: int) -> None:
+    """Both frames as matrices to the world, and NumPy's general inverse of one of them."""
+    first, second = np.eye(4), np.eye(4)
+    first[:3, :3], second[:3, :3], second[:3, 3] = a, b, a @ origin
+    T = frames.change_of_basis(a, b, origin)
+    np.testing.assert_allclose(T, np.linalg.solve(second, first), rtol=0, atol=100 * EXACT)
+    moved = frames.coordinates(a @ (place - w * origin), b)
+    np.testing.assert_allclose(T @ [*place, w], [*moved, w], rtol=0, atol=100 * EXACT)
+    np.testing.assert_array_equal(frames.change_of_basis(a, b, (0, 0, 0)), frames.change_of_basis(a, b))
+
+
+@given(rotations, rotations, vectors(3, 10.0), vectors(3, 10.0))
+def test_a_frame_of_its_own_origin_is_scipys_rigid_transform(a: Array, b: Array, origin: Array, point: Array) -> None:
+    first = RigidTransform.from_rotation(Rotation.from_matrix(a))
+    second = RigidTransform.from_components(a @ origin, Rotation.from_matrix(b))
+    moved = frames.change_of_basis(a, b, origin) @ [*point, 1.0]
+    np.testing.assert_allclose(moved[:3], (second.inv() * first).apply(point), rtol=0, atol=1e-12)
+
+
+def test_a_batch_of_origins_gives_a_matrix_each() -> None:
+    a, b, origins = frames.basis("ros"), frames.basis("camera"), np.array([(1.0, 2.0, 3.0), (0.0, -1.0, 0.5)])
+    T = frames.change_of_basis(a, b, origins)
+    assert T.shape == (2, 4, 4)
+    np.testing.assert_array_equal(T[..., :3, 3], [(2, 3, -1), (-1, 0.5, 0)])
+    with pytest.raises(GeometryError, match="origin"):
+        frames.change_of_basis(a, b, (1.0, 2.0))
 
 
 @given(bases, bases, bases)

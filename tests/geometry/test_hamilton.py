@@ -58,6 +58,26 @@ def test_the_ball_holds_the_whole_quaternion(q: Array) -> None:
         np.testing.assert_allclose(opposite * (point @ point), -point, rtol=0, atol=EXACT * float(1.0 + point @ point))
 
 
+@given(vectors(3, 9.0))
+def test_a_point_of_the_ball_is_scipys_modified_rodrigues_vector(point: Array) -> None:
+    q = hamilton.from_ball(point)
+    np.testing.assert_allclose(np.linalg.norm(q), 1.0, rtol=0, atol=EXACT)
+    assert bool(q[0] >= 0.0) is bool(point @ point <= 1.0)
+    theirs = Rotation.from_mrp(point).as_matrix()
+    np.testing.assert_allclose(quaternion.to_matrix(q), theirs, rtol=0, atol=10 * EXACT)
+    back, finite = hamilton.to_ball(q)
+    assert finite
+    np.testing.assert_allclose(back, point, rtol=0, atol=EXACT * float(1.0 + point @ point) ** 2)
+
+
+def test_points_of_the_ball_are_taken_many_at_once_and_must_be_finite() -> None:
+    points = np.array([[0.0, 0, 0], [0.0, 1.0, 0], [0.0, 0, -2.0]])
+    known = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [-0.6, 0.0, 0.0, -0.8]])
+    np.testing.assert_allclose(hamilton.from_ball(points), known, rtol=0, atol=EXACT)
+    with pytest.raises(GeometryError, match="points"):
+        hamilton.from_ball([0.0, math.nan, 0.0])
+
+
 @given(units(), near(2.0 * math.pi))
 def test_near_minus_one_the_point_keeps_its_digits(axis: Array, angle: float) -> None:
     q = quaternion.from_axis_angle(axis, angle)

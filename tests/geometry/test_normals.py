@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from geometry import Array, GeometryError
-from geometry.clouds import normals, spacing
+from geometry.clouds import neighbourhood, normals, spacing
 from geometry.clouds.eigen import least_eigenvectors
 from tests.geometry.cloud_shapes import DEGENERATE, clouds, wavy
 from tests.geometry.strategies import rotations, seeds
@@ -128,6 +129,31 @@ def test_progress_rises_to_one_and_can_end_the_work() -> None:
 
     with pytest.raises(InterruptedError):
         normals(wavy(0, 40_000), 8, progress=stop)
+
+
+@given(clouds, st.integers(1, 30), seeds)
+def test_one_neighbourhood_is_that_of_a_tree(points: Array, count: int, seed: int) -> None:
+    if not len(points):
+        with pytest.raises(GeometryError, match="index"):
+            neighbourhood(points, 0)
+        return
+    index, count = seed % len(points), min(count, len(points))
+    found = neighbourhood(points, index, count)
+    distances = np.linalg.norm(points[found.rows] - points[index], axis=1)
+    wanted = np.atleast_1d(cKDTree(points).query(points[index], count)[0])
+    np.testing.assert_allclose(distances, wanted, rtol=1e-12, atol=1e-12 * max(1.0, np.abs(points).max()))
+    assert found.rows[0] == index
+    assert len(set(found.rows.tolist())) == count
+    size = np.abs(points[found.rows] - points[index]).max()
+    covariance = np.cov(points[found.rows].T, bias=True) if count > 1 else np.zeros((3, 3))
+    np.testing.assert_allclose(found.axes.T * found.eigenvalues @ found.axes, covariance, rtol=0, atol=1e-12 * size**2)
+    np.testing.assert_allclose(found.center, points[found.rows].mean(axis=0), atol=1e-12 * np.abs(points).max())
+
+
+def test_a_neighbourhood_on_a_line_is_not_flat() -> None:
+    line = np.outer(np.arange(9.0), [1.0, 2.0, 3.0])
+    assert not neighbourhood(line, 4, 5).flat
+    assert neighbourhood(wavy(0, 300), 4, 16).flat
 
 
 def test_spacing_is_the_distance_of_neighbours() -> None:

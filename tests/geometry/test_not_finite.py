@@ -21,6 +21,7 @@ from geometry import (
 )
 from geometry.affine_camera import AffineCamera
 from geometry.camera import Camera, parallel_rig
+from geometry.distortion import Distortion
 
 LEFT, RIGHT = parallel_rig(0.6, 600.0)
 CAMERA = Camera.from_intrinsics(600.0, 500.0, 320.0, 240.0, 10.0, T_camera_world=np.eye(4))
@@ -59,6 +60,8 @@ CASES: dict[str, tuple[Function, Array]] = {
     "camera.project": (lambda p: CAMERA.project(p)[0], in_view),
     "camera.pixel_ray": (lambda p: CAMERA.pixel_ray(p)[1], uv),
     "affine_camera.project": (lambda p: AffineCamera(CAMERA, 2.0).project(p)[0], in_view),
+    "distortion.apply": (Distortion(-0.2, 0.05, 1e-3, 2e-3).apply, np.array([0.3, -0.2])),
+    "distortion.undo": (Distortion(-0.2, 0.05, 1e-3, 2e-3).undo, np.array([0.3, -0.2])),
     "vanishing_points": (lambda d: projection.vanishing_points(CAMERA.P, d)[0], in_view),
     "epipolar_line_right": (lambda p: epipolar.epipolar_line_right(F, p), uv),
     "epipolar_line_left": (lambda p: epipolar.epipolar_line_left(F, p), uv),

@@ -159,7 +159,7 @@ def test_an_affine_camera_shows_the_ground_all_over_or_nowhere() -> None:
 
 def test_a_polygon_is_cut_where_its_distances_change_their_sign() -> None:
     square = [(u, v, 3.0 - u - v) for u, v in ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))]
-    kept = [(u, v) for u, v, _ in clip_polygon(square, 2)]
+    kept = [(u, v) for u, v, _ in clip_polygon(square, [2])]
     assert kept == [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
-    assert clip_polygon([(0.0, -1.0), (1.0, -1.0), (1.0, -2.0)], 1) == []
-    assert clip_polygon([], 1) == []
+    assert clip_polygon([(0.0, -1.0), (1.0, -1.0), (1.0, -2.0)], [1]) == []
+    assert clip_polygon([], [1]) == []

@@ -49,7 +49,36 @@ def test_a_sphere_is_closed_and_has_nearly_its_area_and_volume() -> None:
 def test_a_hollow_sphere_is_a_sheet_when_the_ball_is_small() -> None:
     found = alpha_shape(sphere(3000), 0.08)
     assert found.area == pytest.approx(4.0 * math.pi, rel=0.02)
-    assert abs(found.volume) < 0.05
+    assert not found.solid.all()
+    assert found.volume == pytest.approx(4.0 / 3.0 * math.pi, rel=0.02)
+
+
+def torus(count: int, large: float, small: float) -> Array:
+    """Points about evenly spread over a torus about Z."""
+    k = np.arange(count)
+    along, round_ = 2.0 * math.pi * k * 0.7548776662466927, 2.0 * math.pi * k * 0.5698402909980532
+    radius = large + small * np.cos(round_)
+    return np.stack([radius * np.cos(along), radius * np.sin(along), small * np.sin(round_)], axis=1)
+
+
+@pytest.mark.parametrize("alpha", [0.2, 0.4])
+def test_a_torus_encloses_its_volume_whatever_the_ball_that_stays_outside(alpha: float) -> None:
+    """2π²Rr², by Pappus."""
+    found = alpha_shape(torus(4_000, 2.0, 0.6), alpha)
+    assert found.volume == pytest.approx(2.0 * math.pi**2 * 2.0 * 0.36, rel=0.02)
+
+
+def test_a_shell_with_a_hole_that_the_ball_passes_encloses_nothing() -> None:
+    shell = sphere(1200)
+    shell = shell[shell[:, 2] < 0.9]  # the hole's radius is 0.44
+    assert alpha_shape(shell, 0.13).volume < 0.05
+    stopped = alpha_shape(shell, 0.6).volume
+    assert stopped == pytest.approx(4.0 / 3.0 * math.pi, rel=0.05)
+
+
+def test_a_shell_in_a_shell_is_not_counted_twice() -> None:
+    found = alpha_shape(np.concatenate([sphere(1200), 0.5 * sphere(400)]), 0.13)
+    assert found.volume == pytest.approx(4.0 / 3.0 * math.pi, rel=0.03)
 
 
 @settings(max_examples=10)

@@ -18,6 +18,7 @@ from geometry.triangulation import (
     covariance,
     depth_from_disparity,
     disparity,
+    dlt_equations,
     reprojection_errors,
     triangulate_dlt,
     triangulate_midpoint,
@@ -270,3 +271,51 @@ def test_reprojection_errors_are_distances_to_the_measured_pixels(seen: Seen, no
     batch = reprojection_errors(left, right, np.stack([point, left.center - left.R[2]]), *measured(seen, noise))
     np.testing.assert_allclose(batch[0], errors, rtol=0, atol=1e-9)
     assert np.isnan(batch[1, 0])
+
+
+# A rig whose principal points differ, as those of rectified pictures do: that of Middlebury's Adirondack.
+
+ADIRONDACK = {"baseline": 0.176252, "focal": 4161.221, "doffs": 209.059}
+
+
+@given(d=st.floats(-200.0, 1500.0), v=st.floats(0.0, 1987.0), u=st.floats(0.0, 2879.0))
+def test_depth_with_differing_principal_points_is_opencvs(d: float, u: float, v: float) -> None:
+    b, f, doffs = ADIRONDACK["baseline"], ADIRONDACK["focal"], ADIRONDACK["doffs"]
+    cx, cy = 1445.577, 984.686
+    # OpenCV's Q, with Tx = -b and the right principal point at cx + doffs
+    Q = np.array([[1.0, 0, 0, -cx], [0, 1, 0, -cy], [0, 0, 0, f], [0, 0, 1 / b, doffs / b]])
+    ((expected,),) = cv2.perspectiveTransform(np.array([[[u, v, d]]]), Q)
+    assert depth_from_disparity(d, b, f, doffs) == pytest.approx(expected[2], rel=1e-12)
+    left, right = parallel_rig(b, f, (cx, cy), 0.0, doffs)
+    x, y, z = expected
+    for method in METHODS:
+        point = method(left, right, [u, v], [u - d, v]).point
+        np.testing.assert_allclose(point, [x - b / 2, z, -y], rtol=1e-7, atol=1e-9)
+
+
+def test_no_depth_where_disparity_and_offset_make_zero_or_less() -> None:
+    depths = depth_from_disparity([-209.059, -300.0, 0.0], **ADIRONDACK)
+    assert np.isnan(depths[:2]).all()
+    assert depths[2] == pytest.approx(3.508, abs=1e-3), "no disparity isn't infinitely far there"
+    with pytest.raises(GeometryError, match="doffs"):
+        depth_from_disparity(10.0, 0.1, 600.0, math.nan)
+    with pytest.raises(GeometryError, match="doffs"):
+        parallel_rig(0.1, 600.0, doffs=math.inf)
+
+
+@given(seen=seen_points, noise=noises)
+def test_the_equations_of_the_linear_method_are_those_of_the_projections(seen: Seen, noise: Array) -> None:
+    left, right, point = seen
+    uv = measured(seen, noise)
+    A = dlt_equations(left, right, *uv)
+    for k, camera in enumerate((left, right)):
+        x, y = (np.linalg.inv(camera.K) @ [*uv[k], 1.0])[:2]
+        P = camera.T_camera_world[:3]
+        np.testing.assert_allclose(A[2 * k : 2 * k + 2], [x * P[2] - P[0], y * P[2] - P[1]], rtol=1e-9, atol=1e-9)
+    X = np.linalg.svd(A)[2][3]
+    found = triangulate_dlt(left, right, *uv)
+    if found.valid:
+        np.testing.assert_allclose(found.point, X[:3] / X[3], rtol=1e-9)
+    if not noise.any():
+        assert np.abs(A @ [*point, 1.0]).max() < 1e-9 * max(1.0, np.abs(point).max())
+    assert np.isnan(dlt_equations(left, right, [np.nan, 0.0], uv[1])).all()

@@ -22,6 +22,11 @@ def words(html: str) -> str:
     return " ".join(" ".join(xml(html).itertext()).split())
 
 
+def without_code(html: str) -> str:
+    """What is there for people: code to be copied is for programs."""
+    return re.sub(r"<code>.*?</code>", "", html)
+
+
 def bad_numbers(text: str) -> list[str]:
     """What stands in a text for people that isn't a number for people."""
     found = [pattern.search(text) for pattern in (NO_NUMBER, NEGATIVE_ZERO, HYPHEN_MINUS)]

@@ -19,9 +19,13 @@ from scipy.spatial.transform import Rotation
 
 from app.rooms.motion import between
 from sims.camera import SIM, CameraParams, CameraSolution, actions, solve
+from sims.camera.lens import shown
 from sims.camera.solution import LIFT
-from sims.camera.world import MIDDLE, NAMES, PLACES, POINTS, SUBJECT, TITLES, WIRES
+from sims.camera.window import USUAL, window
 from sims.kit import readout
+from sims.kit.scene.view import FIELD
+from sims.kit.world import NAMES, PLACES, POINTS, SUBJECT, TITLES
+from sims.kit.world_drawing import PAINTER, PAINTS
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
@@ -138,45 +142,77 @@ def test_without_perspective_near_and_far_posts_are_as_tall() -> None:
 
 
 @pytest.mark.parametrize("changes", [{}, {"pan": 30, "cx": 100}, {"position": (2, -6, 3), "tilt": -10, "skew": 50}])
-def test_orthographic_keeps_sizes_at_the_subjects_depth_and_weak_at_the_mean_depth(changes: dict[str, Any]) -> None:
-    p = START.changed(changes)
+def test_weak_perspective_keeps_sizes_at_the_mean_depth_of_what_is_in_front(changes: dict[str, Any]) -> None:
+    p = START.changed({**changes, "projection": "weak"})
     R, t = pose(p)
     depths = (POINTS @ R.T + t)[:, 2]
-    middle = (R @ MIDDLE + t)[2]
-    for kind, depth in (("orthographic", middle), ("weak", depths.mean())):
-        s = solve(p.changed({"projection": kind}))
-        assert s.scale_depth == pytest.approx(depth)
-        assert s.P is not None
-        np.testing.assert_allclose(s.P[2], [0, 0, 0, 1], rtol=0, atol=0)
-        np.testing.assert_allclose(s.P[:2, :3], intrinsics(p)[:2, :2] @ R[:2] / depth, rtol=1e-12, atol=1e-12)
-    perspective, flat = (solve(p.changed({"projection": kind})).subject for kind in ("perspective", "orthographic"))
-    assert flat.pixel == pytest.approx(perspective.pixel, rel=0, abs=1e-9)
+    mean = depths[depths > 0.0].mean()
+    s = solve(p)
+    assert s.scale_depth == pytest.approx(mean)
+    assert s.scale == pytest.approx(p.fx / mean)
+    assert s.P is not None
+    np.testing.assert_allclose(s.P[2], [0, 0, 0, 1], rtol=0, atol=0)
+    np.testing.assert_allclose(s.P[:2, :3], intrinsics(p)[:2, :2] @ R[:2] / mean, rtol=1e-12, atol=1e-12)
+
+
+def test_one_point_behind_the_camera_changes_nothing_of_weak_perspective() -> None:
+    behind = solve(START.changed({"projection": "weak"})).point("back-post")
+    assert behind.depth < 0.0
+    depths = [point.depth for point in solve(START).points if point is not behind and point.depth > 0.0]
+    assert solve(START.changed({"projection": "weak"})).mean_depth == pytest.approx(np.mean(depths))
+
+
+@pytest.mark.parametrize("scale", [40.0, 100.0, 350.0])
+def test_an_orthographic_scale_is_the_same_from_everywhere(scale: float) -> None:
+    """It was divided by the house's depth: moving back shrank the picture, which is weak perspective."""
+    heights = []
+    for y in (-4.0, -8.0, -16.0):
+        for fx in (300.0, 900.0):
+            p = START.changed({"projection": "orthographic", "position": (0, y, 1.2), "fx": fx, "fy": fx})
+            p = p.changed({"ortho_scale": scale})
+            s = solve(p)
+            R, _ = pose(p)
+            assert s.scale == scale
+            assert s.P is not None
+            np.testing.assert_allclose(s.P[:2, :3], scale * R[:2], rtol=0, atol=1e-10)
+            heights.append(upright(s, "near"))
+    np.testing.assert_allclose(heights, scale, rtol=1e-12)  # the post is a metre tall
+    weak = [solve(START.changed({"projection": "weak", "position": (0, y, 1.2)})) for y in (-4.0, -8.0, -16.0)]
+    assert np.all(np.diff([upright(s, "near") for s in weak]) < -10.0)
+
+
+def test_an_orthographic_picture_keeps_skew_and_the_shape_of_pixels() -> None:
+    p = START.changed({"projection": "orthographic", "fx": 800, "fy": 400, "skew": 80, "ortho_scale": 200})
+    s = solve(p)
+    x, y, _ = s.point("near-post").camera
+    assert s.point("near-post").pixel == pytest.approx((200 * x + 20 * y + 320, 100 * y + 240))
 
 
 @given(states)
 def test_every_state_has_an_answer(p: CameraParams) -> None:
     s = solve(p)
-    exists = p.projection == "perspective" or (s.scale_depth is not None and s.scale_depth > 0.0)
-    assert (s.P is not None) == exists == (s.frustum is not None)
-    assert np.isfinite(s.wires).all()
-    u, v = s.wires[..., 0], s.wires[..., 1]
-    assert ((u >= -0.51) & (u <= 639.51) & (v >= -0.51) & (v <= 479.51)).all()
+    exists = p.projection != "weak" or any(point.depth > 0.05 for point in s.points)
+    assert (s.P is not None) == exists == (s.frustum is not None) == (s.seen is not None)
+    for _, corners in s.seen.faces if s.seen else ():
+        u, v = np.array(corners).T
+        assert ((u > -3.6) & (u < 642.6) & (v > -3.6) & (v < 482.6)).all()
     for html in (readout.render(SIM.readouts(p, s)), SIM.panes(p, s)[0].svg):  # type: ignore[misc]
         assert "nan" not in html.lower()
 
 
 @given(states)
-def test_edges_in_the_picture_are_pieces_of_the_projected_edges(p: CameraParams) -> None:
+def test_faces_in_the_picture_are_pieces_of_the_projected_faces(p: CameraParams) -> None:
+    """Each corner is a corner of the face or lies on one of its edges, or where the frame or the camera cuts it off."""
     s = solve(p)
-    for number, (a, b) in zip(s.shown.tolist(), s.wires, strict=True):
+    for number, corners in s.seen.faces if s.seen else ():
         assert s.P is not None
-        first, second = (s.P @ [*end, 1.0] for end in WIRES[number])
-        line = np.cross(first, second)
-        if np.linalg.norm(line[:2]) < 1e-6 * np.abs(first).max() * np.abs(second).max():
-            continue  # the edge points at the camera: a dot
-        line = line / np.linalg.norm(line[:2])
-        for end in (a, b):
-            assert abs(line @ [*end, 1.0]) < 1e-4
+        face = np.column_stack([PAINTER.faces[number], np.ones(len(PAINTER.faces[number]))]) @ s.P.T
+        for u, v in corners:
+            if not (-3.4 < u < 642.4 and -3.4 < v < 482.4):
+                continue
+            lines = np.cross(face, np.roll(face, -1, axis=0))
+            lines = lines / np.linalg.norm(lines[:, :2], axis=1, keepdims=True)
+            assert np.abs(lines @ [u, v, 1.0]).min() < 1e-3
 
 
 def test_parallels_of_the_street_meet_at_its_vanishing_points() -> None:
@@ -242,6 +278,11 @@ def sight_line(p: CameraParams, place: Array) -> tuple[Array, Array]:
     return place, pose(p)[0][2]
 
 
+def real(p: CameraParams, places: Array) -> Array:
+    """Pixels of places in the picture as it is shown, which is 640 wide."""
+    return np.asarray((places + 0.5) * p.width / 640 - 0.5)
+
+
 def miss(start: Array, direction: Array, point: Array) -> float:
     """How far a line passes by a point."""
     unit = direction / np.linalg.norm(direction)
@@ -272,17 +313,20 @@ def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p:
         assert not rig.model.visible("/camera/dots")
         assert not rig.model.visible("/camera/ray")
         return
+    outside = not p.through
+    assert rig.model.visible("/camera/dots") == outside
     dots = rig.model.points("/camera/dots").reshape(-1, 3)
     assert len(dots) == len(seen)
     for dot, point in zip(dots, seen, strict=True):
         assert miss(*sight_line(p, dot), np.array(point.world)) < 1e-6 * max(1.0, point.depth)
-    assert rig.model.visible("/camera/rays") == (bool(seen) and p.show_rays)
-    if seen and p.show_rays:
+    assert rig.model.visible("/camera/rays") == (bool(seen) and p.show_rays and outside)
+    if seen and p.show_rays and outside:
         rays = rig.model.points("/camera/rays").reshape(-1, 2, 3)
         np.testing.assert_allclose(rays[:, 1], [point.world for point in seen], rtol=0, atol=2e-6)
     chosen = s.point(p.selected)
-    assert rig.model.visible("/camera/ray") == (chosen.pixel is not None) == rig.model.visible("/camera/dot")
-    if chosen.pixel is not None:
+    there = chosen.pixel is not None and outside
+    assert rig.model.visible("/camera/ray") == there == rig.model.visible("/camera/dot")
+    if there:
         dot = rig.model.world_pose("/camera/dot")[:3, 3]
         assert miss(*sight_line(p, dot), np.array(chosen.world)) < 1e-6
         start, end = rig.model.points("/camera/ray")[0]
@@ -296,7 +340,8 @@ def test_lines_of_sight_through_drawn_image_points_hit_their_points(rig: Rig, p:
 def test_frustum_and_picture_are_the_true_ones(rig: Rig, p: CameraParams) -> None:
     rig.show(p)
     s = solve(p)
-    assert rig.model.visible("/camera/picture") == (s.frustum is not None) == rig.model.visible("/camera/frustum")
+    there = s.frustum is not None and not p.through
+    assert rig.model.visible("/camera/picture") == there == rig.model.visible("/camera/frustum")
     if s.frustum is None:
         return
     R, t = pose(p)
@@ -304,10 +349,11 @@ def test_frustum_and_picture_are_the_true_ones(rig: Rig, p: CameraParams) -> Non
     def pixels(places: Array) -> Array:
         """By the camera's own K: on the picture itself, at its depth or, without perspective, at the one depth."""
         axes = places.reshape(-1, 3) @ R.T + t
-        flat = axes[:, :2] / (s.scale_depth or axes[:, 2:])
+        flat = axes[:, :2] / (p.fx / s.scale if s.scale else axes[:, 2:])
         return np.asarray(np.column_stack([flat, np.ones(len(flat))]) @ intrinsics(p)[:2].T)
 
-    frame = [(-0.5, -0.5), (639.5, -0.5), (639.5, 479.5), (-0.5, 479.5)]
+    right, bottom = p.width - 0.5, p.height - 0.5
+    frame = [(-0.5, -0.5), (right, -0.5), (right, bottom), (-0.5, bottom)]
     corners = rig.model.points("/camera/picture").reshape(-1, 3)
     np.testing.assert_allclose(pixels(corners), frame, rtol=0, atol=2e-3)
     edges = rig.model.points("/camera/frustum").reshape(-1, 2, 3)
@@ -317,31 +363,38 @@ def test_frustum_and_picture_are_the_true_ones(rig: Rig, p: CameraParams) -> Non
     else:
         along = edges[:4, 1] - edges[:4, 0]
         np.testing.assert_allclose(along, np.tile(s.frustum.depth * R[2], (4, 1)), rtol=0, atol=1e-5)
-    drawn = rig.model.points("/camera/wires").reshape(-1, 2, 3)[s.shown]
-    np.testing.assert_allclose(pixels(drawn), s.wires.reshape(-1, 2), rtol=0, atol=5e-3)
+    assert s.seen is not None
+    edges = (s.straight or s.seen).outlines()
+    assert rig.model.visible("/camera/wires") == (len(edges) > 0 and not p.through)
+    if len(edges) and not p.through:
+        drawn = rig.model.points("/camera/wires").reshape(-1, 3)
+        np.testing.assert_allclose(pixels(drawn), real(p, edges.reshape(-1, 2)), rtol=0, atol=5e-3 * p.width / 640)
 
 
 @each_drawn
 def test_the_picture_beside_the_scene_shows_the_same_pixels(rig: Rig, p: CameraParams) -> None:
     rig.show(p)
     s = solve(p)
-    marks = {e.get("data-link"): e for e in xml(rig.column.html("pane")).iter() if e.get("data-link")}
+    marks = {e.get("data-link"): e for e in xml(rig.column.html("pane")).iter("g") if e.get("data-link")}
     assert set(marks) == {point.name for point in s.points if point.pixel is not None}
     for point in s.points:
         if point.in_image:
             found = re.findall(r"[-\d.]+", str(marks[point.name].get("transform")))
-            assert tuple(map(float, found)) == pytest.approx(point.pixel, rel=0, abs=0.006)
+            assert point.pixel is not None
+            assert tuple(map(float, found)) == pytest.approx(shown(p, point.pixel), rel=0, abs=0.006)
         elif point.pixel is not None:
             assert next(marks[point.name].iter("path")) is not None, "an arrowhead at the border"
     assert "∞" in rig.column.html("pane") or all(m.pixel or not m.homogeneous for m in s.vanishing)
 
 
-def test_the_street_stands_on_the_ground(rig: Rig) -> None:
-    assert WIRES[..., 2].min() == 0.0
+def test_the_little_world_stands_on_the_ground_in_the_scene(rig: Rig) -> None:
     assert rig.model.world_pose("/ground")[2, 3] == 0.0
-    drawn = np.concatenate([rig.model.points(f"/street/{role}").reshape(-1, 3) for role in ("ink", "x", "y", "z")])
-    assert len(drawn) == 2 * len(WIRES)
-    assert abs(drawn[:, 2].min()) < 1e-12
+    drawn = {paint: rig.model.points(f"/things/{paint}").reshape(-1, 3) for paint in PAINTS}
+    assert min(places[:, 2].min() for places in drawn.values()) == 0.0
+    corners = np.concatenate(list(drawn.values()))
+    for place in POINTS:
+        assert np.linalg.norm(corners - place, axis=1).min() < 1e-6
+    assert len(corners) == sum(len(face) for face in PAINTER.faces)
 
 
 # ---- selection
@@ -440,7 +493,7 @@ def test_a_projection_without_scale_says_so_and_the_rest_goes_on() -> None:
     s = solve(p)
     assert s.P is None
     assert all(point.pixel is None for point in s.points)
-    assert "isn't in front of the camera" in words(readout.render(SIM.readouts(p, s)))
+    assert "No picture: its scale comes from" in words(readout.render(SIM.readouts(p, s)))
 
 
 # ---- hands
@@ -581,3 +634,107 @@ def test_actions_end_in_states_from_everywhere(p: CameraParams) -> None:
         for step in action(p):
             state = state.changed(step.changes)
         assert SIM.describe(state, solve(state))
+
+
+# ---- the column
+
+
+def chain(p: CameraParams) -> list[list[str]]:
+    """Each step of the line over the picture: what leads to it, what it is, its numbers."""
+    (pane,) = SIM.panes(p, solve(p)) if SIM.panes else ()
+    return [[str(part.text) for part in step] for step in xml(pane.line).iter("li")]
+
+
+def test_the_line_over_the_picture_leads_from_the_world_to_the_pixel() -> None:
+    p = START.changed({"selected": "near-post", "skew": 40, "pan": 7, "fy": 500})
+    R, t = pose(p)
+    axes = R @ PLACES["near-post"] + t
+    pixel = intrinsics(p) @ (axes / axes[2])
+    steps = chain(p)
+    assert [what for *_, what, _ in steps] == ["world, m", "camera, m", "normalised", "pixel"]
+    assert [by for by, *_ in steps[1:]] == ["R, t", "÷ z", "K"]
+    places = (PLACES["near-post"], axes, axes[:2] / axes[2], pixel[:2])
+    for (*_, said), numbers, digits in zip(steps, places, (2, 2, 2, 1), strict=True):
+        assert said == f"({', '.join(readout.figure(v, digits) for v in numbers)})"
+
+
+def test_the_line_says_what_each_projection_does_and_where_there_is_no_pixel() -> None:
+    steps = chain(START.changed({"projection": "orthographic", "selected": "near-post", "ortho_scale": 200}))
+    assert [by for by, *_ in steps[1:]] == ["R, t", "no z", "×"]
+    x, y = (float(v.replace("−", "-")) for v in steps[2][-1].strip("()").split(", "))
+    u, v = (float(v) for v in steps[3][-1].strip("()").split(", "))
+    assert (u, v) == pytest.approx((200 * x + 320, 200 * y + 240), abs=1.1)
+    assert chain(START.changed({"projection": "weak"}))[2][0] == "÷ mean z"
+    assert chain(START.changed({"k1": -0.2}))[3][0] == "lens"
+    assert chain(START.changed({"selected": "back-post"}))[-1] == ["pixel", "⚠ behind"]
+
+
+def test_few_controls_are_in_sight() -> None:
+    first = [name for name in CameraParams.visible if not CameraParams.kinds[name].group]
+    assert first == ["through", "projection", "fx", "position", "pan", "tilt"]
+    assert [action.name for action in SIM.actions if not action.group] == ["dolly-zoom"]
+
+
+# ---- through the camera
+
+
+@pytest.mark.parametrize("projection", ["perspective", "orthographic", "weak"])
+def test_through_the_camera_the_window_holds_the_whole_picture(projection: str) -> None:
+    p = START.changed({"through": True, "projection": projection, "cx": 150, "pan": 20, "roll": 35, "tilt": -15})
+    s, (R, _) = solve(p), pose(p)
+    w = window(p, s)
+    ahead = np.subtract(w.look_at, w.position)
+    np.testing.assert_allclose(ahead / np.linalg.norm(ahead), R[2], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(w.up, -R[1], rtol=0, atol=1e-12)
+    assert s.frustum is not None
+    corners = (s.frustum.corners @ R + p.position - w.position) @ R.T
+    slopes = np.abs(corners[:, :2] / corners[:, 2:])
+    np.testing.assert_allclose(slopes.max(axis=0), w.half, rtol=1e-9)
+    assert (p.position == pytest.approx(w.position)) == (projection == "perspective")
+    for point in s.points:  # seen from there, a point is where the picture has it
+        if point.pixel is not None and point.in_image:
+            x, y, z = R @ (np.array(point.world) - w.position)
+            place = (np.array((x, y)) / z - corners[0, :2] / corners[0, 2]) / np.ptp(
+                corners[:, :2] / corners[:, 2:], axis=0
+            )
+            pixel = place * (p.width, p.height) - 0.5
+            assert pixel == pytest.approx(point.pixel, abs=1e-6 if projection == "perspective" else 8.0)
+
+
+def test_the_view_of_who_looks_through_is_just_there_and_the_usual_one_afterwards() -> None:
+    p = START.changed({"position": (0, -18, 1.2)})
+    through = p.changed({"through": True})
+    home = SIM.home(through, solve(through))
+    assert (home.position, home.radius) == (p.position, 0.0)
+    assert SIM.home(p, solve(p)).radius > USUAL.radius
+    assert SIM.home(START, solve(START)) == USUAL
+
+
+def test_who_looks_through_sees_neither_the_camera_nor_its_grips(rig: Rig) -> None:
+    rig.show(START.changed({"through": True}))
+    for node in ("/eye", "/look", "/camera/body", "/camera/lens", "/camera/axes", "/camera/rays", "/camera/frustum"):
+        assert not rig.model.visible(node), node
+    assert rig.model.visible("/camera/frame")
+    assert rig.model.visible("/things/wall")
+    rig.show(START)
+    for node in ("/eye", "/look", "/camera/body", "/camera/lens", "/camera/axes", "/camera/rays", "/camera/frustum"):
+        assert rig.model.visible(node), node
+    assert not rig.model.visible("/camera/frame")
+
+
+@pytest.mark.parametrize("aspect", [0.94, 0.64, 1.5])
+def test_the_camera_is_in_sight_wherever_it_is_beside_a_large_picture(aspect: float) -> None:
+    """At x = 7 m it had gone behind the column."""
+    half = math.tan(0.5 * FIELD) * np.array((aspect, 1.0))
+    for x, y, z in itertools.product((-9.0, -5.0, 0.0, 5.0, 9.0), (-9.0, -4.0, 0.0, 4.0), (0.0, 1.2, 6.0)):
+        p = START.changed({"position": (x, y, z)})
+        home = SIM.home(p, solve(p))
+        back = np.subtract(home.position, home.look_at)
+        back = back / np.linalg.norm(back)
+        eye = home.look_at + back * home.radius / math.sin(math.atan(half.min()))
+        right = np.cross(-back, (0.0, 0.0, 1.0))
+        right = right / np.linalg.norm(right)
+        for place in (p.position, (x, y, z + LIFT)):
+            away = np.subtract(place, eye)
+            slopes = np.abs([right @ away, np.cross(right, -back) @ away]) / (-back @ away)
+            assert (slopes < half).all(), (x, y, z, slopes / half)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -13,14 +13,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.rooms import motion
 from sims.coordinate_frames import SIM, FramesParams, FramesSolution, solve
 from sims.coordinate_frames.conventions import NAMES, Convention
 from sims.coordinate_frames.meshes import hand
-from sims.coordinate_frames.solution import ARROW, IN_VIEW
+from sims.coordinate_frames.solution import ARROW, IN_VIEW, SHORTEST
 from sims.kit.readout import figure
 from sims.kit.sim import Step
 from tests.frames import SceneModel
 from tests.server import Rig
+from tests.sims.markup import xml
 
 Array = npt.NDArray[np.float64]
 DIRECTIONS = {
@@ -52,6 +54,8 @@ READINGS: dict[Convention, tuple[float, float, float]] = {
     "unreal": (-0.6, 1, 0.8),
 }
 HANDS = (None, "right", "left")
+DRAWN_AXES = ("/axes/x", "/axes/y", "/axes/third/z")
+FINGERS = ("near", "near/middle", "near/middle/far")
 each_hand = pytest.mark.parametrize(("convention", "handed"), list(product(ON_PAPER, HANDS)))
 each_pair = pytest.mark.parametrize(("convention", "to"), list(product(ON_PAPER, ON_PAPER)))
 numbers = st.floats(-5, 5)
@@ -78,7 +82,11 @@ def close(got: Any, wanted: Any, *, rtol: float = 0.0, atol: float, err_msg: str
 
 
 def state(**changes: Any) -> FramesParams:
+    """The defaults of the contract, but for what is said."""
     return FramesParams.model_validate(changes)
+
+
+PLAIN = state(to="opengl")
 
 
 def axes_on_paper(convention: Convention, handed: str | None) -> Array:
@@ -203,19 +211,18 @@ def test_a_point_that_is_said_is_read_in_the_new_axes() -> None:
 
 
 def test_absent_handedness_is_left_out_of_the_link() -> None:
-    assert state(handedness=None).query() == ""
+    assert state(handedness=None, to="ros").query() == "to=ros"
     assert state(handedness="right").query() == "handedness=right"
     assert FramesParams.from_query([("handedness", "left")]).handedness == "left"
 
 
 @each_hand
 def test_axes_change_and_neither_car_nor_point_moves(rig: Rig, convention: Convention, handed: str | None) -> None:
-    rig.show(FramesParams())
+    rig.show(PLAIN.changed({"origin": (0.3, -0.2, 1.1)}))
     model = rig.model
-    still = [
-        n for n in model.names if n.split("/")[1] in ("car", "forward", "right", "up", "ground", "point", "origin")
-    ]
-    assert {"/car/body", "/point", "/up/label"} <= set(still)
+    places = ("car", "forward", "right", "up", "ground", "point", "origin", "second")
+    still = [n for n in model.names if n.split("/")[1] in places]
+    assert {"/car/body", "/point", "/up/label", "/second"} <= set(still)
     before = {name: model.world_pose(name) for name in still}
     rig.change(convention=convention, handedness=handed)
     rig.settle()
@@ -224,7 +231,10 @@ def test_axes_change_and_neither_car_nor_point_moves(rig: Rig, convention: Conve
     close(drawn_axes(model), axes_on_paper(convention, handed), atol=1e-6)
     reading = model.labels()["/point/label"]
     assert reading == in_words(solve(rig.session.params).cartesian)  # type: ignore[arg-type]
-    assert rig.column.vector("point") == pytest.approx(own_reading(rig.session.params, READINGS[convention]))  # type: ignore[arg-type]
+    p = rig.session.params
+    assert isinstance(p, FramesParams)
+    assert rig.column.vector("point") == pytest.approx(own_reading(p, READINGS[convention]))
+    close(axes_on_paper(convention, handed) @ p.origin, (0.3, -1.1, -0.2), atol=1e-12)
 
 
 def in_words(point: Array | None) -> str:
@@ -284,14 +294,44 @@ def test_hands_are_mirror_images_whose_faces_look_outwards() -> None:
         assert left[name].volume == pytest.approx(part.volume)
 
 
-def test_animation_starts_with_the_fingers_along_x() -> None:
+@pytest.mark.parametrize(("convention", "hand"), [("ros", "right"), ("unreal", "left")])
+def test_the_rule_says_one_thing_at_a_time_and_lights_its_axis(rig: Rig, convention: str, hand: str) -> None:
     (action,) = [a for a in SIM.actions if a.name == "rule"]
-    steps = list(action.run(state(show_rule=False, rule=0.3)))
-    assert all(isinstance(step, Step) for step in steps)
-    assert steps[0] == Step({"show_rule": True, "rule": 0.0}, 0.0)
-    assert isinstance(steps[-1], Step)
-    assert steps[-1].changes == {"rule": 1.0}
-    assert 0.4 <= steps[-1].seconds <= 1.2
+    p = state(convention=convention, show_rule=False, rule=0.3)
+    seen = []
+    for step in action.run(p):
+        assert isinstance(step, Step)
+        p = p.moved(step.changes)
+        rig.show(p)
+        thick = {axis: rig.model.node(path).props["shaft_radius"] for axis, path in zip("xyz", DRAWN_AXES, strict=True)}
+        assert p.lit is None or thick[p.lit] > 2.0 * max(v for axis, v in thick.items() if axis != p.lit)
+        if step.words and (p.lit, p.rule, step.words) not in seen:
+            seen.append((p.lit, p.rule, step.words))
+            assert p.show_rule
+            assert step.seconds >= 1.0, "there is time to read it"
+    assert [(lit, rule) for lit, rule, _ in seen] == [("x", 0.0), ("y", 1.0), ("z", 1.0)]
+    assert f"{hand} hand along X" in seen[0][2]
+    assert "towards Y" in seen[1][2]
+    assert f"along Z: these axes are {hand}-handed" in seen[2][2]
+    assert p.lit is None
+    assert len(set(thick.values())) == 1
+
+
+@each_hand
+def test_the_hand_is_at_the_origin_fingers_along_x_and_thumb_along_z(
+    rig: Rig, convention: Convention, handed: str | None
+) -> None:
+    rig.show(state(convention=convention, handedness=handed, rule=0))
+    hand, axes = solve(rig.session.params).handedness, axes_on_paper(convention, handed)  # type: ignore[arg-type]
+    thumb = rig.model.points(f"/rule/{hand}/thumb").reshape(-1, 3) @ axes
+    assert np.linalg.norm(thumb[thumb[:, 2].argmax(), :2]) < 0.06, "its tip is on the axis"
+    fingers = np.concatenate([rig.model.points(f"/rule/{hand}/{part}") for part in FINGERS]).reshape(-1, 3) @ axes
+    middle = fingers.mean(axis=0)
+    assert np.linalg.norm(middle[1:]) < 0.1, "they are along the axis"
+    assert 0.2 < middle[0] < 0.8
+    palm = rig.model.points(f"/rule/{hand}/palm").reshape(-1, 3) @ axes
+    assert (palm.min(axis=0) < 0.05).all()
+    assert palm[:, 0].max() > 0.0, "the origin is in it"
 
 
 @each_pair
@@ -311,6 +351,273 @@ def test_grids_are_the_planes_of_their_axes(rig: Rig, convention: Convention, ha
         points = rig.model.points(f"/axes/{name}").reshape(-1, 3)
         close(points @ axes[:, normal], 0.0, atol=1e-6)
         assert np.linalg.matrix_rank(points, tol=1e-3) == 2
+        assert np.abs(points).max() > 1.4, "it is larger than the axes"
+
+
+@each_hand
+def test_in_faint_grids_one_strong_line_goes_through_the_foot_of_the_point(
+    rig: Rig, convention: Convention, handed: str | None
+) -> None:
+    p = state(convention=convention, handedness=handed, grid_xy=True, grid_xz=True, grid_yz=True)
+    rig.show(p)
+    s, along = solve(p), set()
+    assert s.point_world is not None
+    for name, normal in (("grid_xy", 2), ("grid_xz", 1), ("grid_yz", 0)):
+        (line,) = rig.model.points(f"/axes/{name}/through")
+        foot = s.point_world - s.basis[:, normal] * (s.basis[:, normal] @ s.point_world)
+        close(np.cross(line[1] - line[0], foot - line[0]), 0.0, atol=1e-6)
+        along.add(int(np.abs((line[1] - line[0]) @ s.basis).argmax()))
+        faint, strong = (rig.model.node(n).props for n in (f"/axes/{name}", f"/axes/{name}/through"))
+        assert strong["thickness"] > 2.0 * faint["thickness"]
+        assert np.min(faint["colors"]) > np.min(strong["colors"]), "more of the white page is in it"
+    assert along == {0, 1, 2}
+
+
+def test_the_car_is_seen_through() -> None:
+    """So that an axis which leads down, in camera and aviation, is seen in it."""
+    with Rig(SIM, state(convention="aviation")) as rig:
+        bodies = [name for name in rig.model.names if name.startswith("/car/")]
+        assert len(bodies) == 4
+        assert all(rig.model.node(name).props["opacity"] <= 0.5 for name in bodies)
+
+
+# ---- the second frame
+
+
+def frame(axes: Array, origin: npt.ArrayLike) -> Array:
+    """A frame as a matrix to the world."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = axes, origin
+    return T
+
+
+ORIGIN = (0.4, -1.2, 0.3)
+
+
+@each_pair
+def test_a_point_is_shifted_and_a_direction_is_not(convention: Convention, to: Convention) -> None:
+    for handed in HANDS:
+        p = state(convention=convention, to=to, handedness=handed, point=(0.3, -1.2, 2.5), origin=ORIGIN)
+        s, first = solve(p), axes_on_paper(convention, handed)
+        T = np.linalg.solve(frame(axes_on_paper(to, None), first @ ORIGIN), frame(first, 0.0))
+        close(s.matrix, T, atol=1e-12)
+        close(s.homogeneous_to, T @ [*p.point, 1.0], atol=1e-12)
+        close(s.cartesian_to, (T @ [*p.point, 1.0])[:3], atol=1e-12)
+        close(s.direction_to, T @ [*p.point, 0.0], atol=1e-12)
+        near = solve(p.changed({"origin": (0, 0, 0)}))
+        np.testing.assert_array_equal(s.direction_to, near.direction_to)
+        assert np.abs(s.homogeneous_to - near.homogeneous_to).max() > 0.1
+        assert s.determinant == near.determinant
+
+
+@pytest.mark.parametrize("w", [0.0, 0.5, 1.0, 2.0])
+def test_the_product_beside_the_scene_is_that_of_the_solution(rig: Rig, w: float) -> None:
+    p = state(convention="ros", to="camera", point=(0.5, -1, 0.25), origin=ORIGIN, w=w)
+    rig.show(p)
+    s = solve(p)
+    formula = next(e for e in xml(rig.column.parts["read:"]).iter("math"))
+    shown = [e.text for e in formula.iter("mn")]
+    wanted = [figure(v, 2 if k % 4 == 3 else 0) for k, v in enumerate(s.matrix.ravel().tolist())]
+    for vector in (s.homogeneous, (*p.point, 0.0), s.homogeneous_to, s.direction_to):
+        wanted += [figure(float(v), 2) for v in vector]
+    assert shown == wanted
+    close(s.homogeneous_to[:3], s.direction_to[:3] + w * s.matrix[:3, 3], atol=1e-12)
+    said = "point direction moves stays" if w else "direction direction stays stays"
+    assert " ".join(e.text or "" for e in formula.iter("mtext")) == said
+
+
+@each_pair
+def test_the_second_frame_is_drawn_at_its_origin(rig: Rig, convention: Convention, to: Convention) -> None:
+    p = state(convention=convention, to=to, origin=ORIGIN)
+    rig.show(p)
+    s, model = solve(p), rig.model
+    close(s.origin_world, axes_on_paper(convention, None) @ ORIGIN, atol=1e-12)
+    assert model.visible("/to")
+    for name in ("/to", "/second"):
+        close(model.world_pose(name)[:3, 3], s.origin_world, atol=1e-12)
+    close(drawn_axes(model, "/to"), axes_on_paper(to, None), atol=1e-6)
+    pose = frame(axes_on_paper(to, None), s.origin_world)
+    assert s.point_world is not None
+    close((np.linalg.inv(pose) @ [*s.point_world, 1.0])[:3], s.cartesian_to, atol=1e-12)
+    close(model.points("/sight")[0, 0], s.origin_world, atol=1e-6)
+    assert np.linalg.norm(model.points("/sight")[-1, 1] - s.point_world) < 0.1
+
+
+def test_one_arrow_stands_for_the_direction_at_either_origin(rig: Rig) -> None:
+    for w in (1.0, 0.0):
+        p = state(convention="ros", to="camera", origin=ORIGIN, w=w)
+        rig.show(p)
+        s, model = solve(p), rig.model
+        first = model.points("/directions")[0] if w else model.points("/away")[0]
+        copy = model.points("/directions")[-1]
+        close(first[0], (0, 0, 0), atol=1e-6)
+        close(copy[0], s.origin_world, atol=1e-6)
+        close(copy[1] - copy[0], first[1] - first[0], atol=1e-6)
+        close(axes_on_paper("camera", None).T @ (copy[1] - copy[0]), s.direction_to[:3], atol=1e-6)
+        assert model.visible("/directions/label")
+
+
+@each_hand
+def test_the_second_origin_is_pulled_and_typed(rig: Rig, convention: Convention, handed: str | None) -> None:
+    rig.show(state(convention=convention, handedness=handed))
+    before = solve(rig.session.params)  # type: ignore[arg-type]
+    aim = (0.321, -0.25, 1.125)
+    rig.browser.drag("/second", (0.1, 0.1, 0.1), aim)
+    rig.settle()
+    p = rig.session.params
+    assert isinstance(p, FramesParams)
+    close(rig.model.world_pose("/second")[:3, 3], aim, atol=1e-12)
+    close(p.origin, axes_on_paper(convention, handed).T @ aim, atol=1e-12)
+    np.testing.assert_array_equal(solve(p).point_world, before.point_world)
+    rig.browser.move("origin", [0.5, 0, 0])
+    rig.settle()
+    close(rig.model.world_pose("/second")[:3, 3], 0.5 * axes_on_paper(convention, handed)[:, 0], atol=1e-12)
+
+
+def test_moving_the_second_frame_comes_back_and_says_why() -> None:
+    (action,) = [a for a in SIM.actions if a.name == "shift"]
+    p = FramesParams.from_query([])
+    places, words = {p.origin}, []
+    for step in action.run(p):
+        assert isinstance(step, Step)
+        p = p.moved(step.changes)
+        places.add(p.origin)
+        words.append(step.words)
+    assert p == FramesParams.from_query([])
+    assert len(places) == 2
+    assert all(0 < len(each) <= 120 for each in words)
+
+
+# ---- how the sim opens, and what links mean
+
+
+def test_it_opens_with_two_frames_that_differ() -> None:
+    p = FramesParams.from_query([])
+    assert p == FramesParams(**FramesParams.opening)
+    assert p.query() == ""
+    s = solve(p)
+    assert np.abs(s.matrix[:3, :3] - np.eye(3)).max() == 1.0
+    assert np.linalg.norm(s.origin_world) > 0.5
+    assert SIM.home(p, s) == SIM.view, "all of it is in sight"
+
+
+@pytest.mark.parametrize(
+    "link",
+    ["to=opengl", "convention=ros", "handedness=right", "point=1,0.5,2", "w=1", "grid_xy=0", "show_rule=1", "rule=1"],
+)
+def test_a_link_that_says_anything_means_the_defaults_of_the_contract_by_the_rest(link: str) -> None:
+    name, _, text = link.partition("=")
+    p = FramesParams.from_query([(name, text)])
+    fields = FramesParams.model_fields
+    rest = {each: getattr(p, each) for each in fields if each != name}
+    assert rest == {each: fields[each].default for each in rest}
+    assert (rest.get("to", "opengl"), p.origin) == ("opengl", (0.0, 0.0, 0.0))
+    assert FramesParams.from_query([tuple(item.split("=")) for item in p.query().split("&")]) == p  # type: ignore[misc]
+
+
+def test_the_defaults_have_a_link_of_their_own() -> None:
+    assert PLAIN.query() == "convention=opengl"
+    assert PLAIN.changed({"to": "ros"}).query() == "to=ros"
+
+
+# ---- handedness is a choice of two
+
+
+@each_hand
+def test_handedness_is_one_of_two_and_shown(rig: Rig, convention: Convention, handed: str | None) -> None:
+    p = state(convention=convention, handedness=handed)
+    rig.show(p)
+    offered = p.options("handedness")
+    assert list(offered.values()) == ["Right-handed", "Left-handed"]
+    assert offered[p.handedness].lower().startswith(p.axes.handedness)
+    radios = [e.get("value") for e in xml(rig.column.parts["control:handedness"]).iter("input")]
+    assert radios == [value or "" for value in offered]
+    assert rig.column.values["handedness"] == (p.handedness or "")
+    other = next(value for value in offered if value != p.handedness)
+    rig.browser.move("handedness", other)
+    rig.settle()
+    after = rig.session.params
+    assert isinstance(after, FramesParams)
+    assert {after.axes.handedness, p.axes.handedness} == {"right", "left"}
+
+
+def test_a_convention_that_is_chosen_has_its_own_handedness() -> None:
+    assert state(convention="opengl", handedness="left").moved({"convention": "ros"}).handedness is None
+    assert state(convention="opengl", handedness="left").changed({"convention": "ros"}).handedness == "left"
+
+
+# ---- axes turn
+
+
+def drawing(rig: Rig, name: str, value: Any) -> list[Array]:
+    """The first axes in each state on the way, as they are drawn in it."""
+    before = rig.session.params
+    assert isinstance(before, FramesParams)
+    assert SIM.eases is not None
+    steps = list(SIM.eases(before, before.moved({name: value})))
+    assert [step.seconds for step in steps] == [0.0, 0.8, 0.0]
+    start, end, rest = (dict(step.changes) for step in steps)
+    seen = []
+    for done in (0.0, 0.3, 0.7, 1.0):
+        way = {k: motion.between(start[k], v, done) for k, v in end.items()}
+        rig.show(before.moved({name: value}).moved(way))
+        seen.append(lengths_and_directions(rig.model))
+    rig.show(before.moved({name: value}).moved(rest))
+    assert rig.session.params == before.moved({name: value})
+    close(lengths_and_directions(rig.model), seen[-1], atol=1e-6)
+    return seen
+
+
+def lengths_and_directions(model: SceneModel) -> Array:
+    return np.column_stack([model.points(path)[0, 1] for path in DRAWN_AXES])
+
+
+@pytest.mark.parametrize(("convention", "to"), list(pairwise([*ON_PAPER, "opengl"])))
+def test_chosen_axes_turn_from_where_the_others_were(rig: Rig, convention: Convention, to: Convention) -> None:
+    rig.show(state(convention=convention))
+    before = lengths_and_directions(rig.model)
+    seen = drawing(rig, "convention", to)
+    close(seen[0], before, atol=1e-6)
+    for axes in seen:
+        x, y, z = axes.T
+        close((x @ y, y @ z, z @ x), 0.0, atol=1e-5)
+        close((np.linalg.norm(x), np.linalg.norm(y)), np.linalg.norm(before[:, 0]), atol=1e-5)
+    turned = [np.degrees(np.arccos(np.clip(unit(a[:, 0]) @ unit(b[:, 0]), -1, 1))) for a, b in pairwise(seen)]
+    assert max(turned) < 100.0, "it doesn't jump"
+
+
+def test_a_mirrored_axis_shrinks_and_grows_on_the_other_side(rig: Rig) -> None:
+    rig.show(state(convention="enu", origin=(0, 1, 0)))
+    heights = [axes[2, 2] for axes in drawing(rig, "handedness", "left")]
+    assert heights[0] > heights[1] > 0.0 > heights[2] > heights[3] == -heights[0]
+    assert not list(SIM.eases(PLAIN, PLAIN.changed({"w": 0.5})))  # type: ignore[misc]
+
+
+def test_no_box_of_coordinates_while_its_axes_turn_and_any_other_change_ends_it(rig: Rig) -> None:
+    half = state(convention="ros", turn=(1, 1, 0, 0, 0.5), turn_to=(1, 0, 1, 0, 1), lit="x")
+    rig.show(half)
+    assert not rig.model.visible("/axes/box")
+    rig.browser.move("w", 0.9)
+    rig.settle()
+    p = rig.session.params
+    assert isinstance(p, FramesParams)
+    assert (p.turn, p.turn_to, p.lit) == (None, None, None)
+    assert rig.model.visible("/axes/box/x")
+    assert half.changed({"point": (1, 1, 1)}).turn is None
+
+
+def test_a_chosen_convention_is_seen_to_turn_but_not_where_motion_is_reduced(rig: Rig) -> None:
+    rig.show(state(to="camera"))
+    rig.browser.move("convention", "ros")
+    p = rig.session.params
+    assert isinstance(p, FramesParams)
+    assert (p.convention, p.turn is None) == ("ros", False)
+    rig.host.wait(rig.session.rested())
+    assert rig.session.params == state(to="camera").moved({"convention": "ros"})
+    rig.session.motion.reduced = True
+    rig.browser.move("convention", "enu")
+    assert rig.session.params.turn is None
+    rig.session.motion.reduced = False
 
 
 # ---- the point
@@ -342,8 +649,10 @@ def test_what_w_does_is_drawn_and_said(rig: Rig, w: float) -> None:
     assert model.visible("/away") == away
     assert model.visible("/axes/box/x") == (not away)
     if away:
-        arrow = model.points("/away")[0]
-        close(arrow, [(0, 0, 0), ARROW * np.asarray(s.direction)], atol=1e-6)
+        arrow, length = model.points("/away")[0], ARROW if w else math.hypot(*p.point)
+        close(arrow, [(0, 0, 0), length * np.asarray(s.direction)], atol=1e-6)
+    assert "s3-near" not in rig.column.html("read")
+    assert "s3-warn" not in rig.column.html("read"), "it is no error"
     if w == 0.0:
         close(model.world_pose("/point")[:3, 3], s.tip, atol=1e-12)
         assert labels["/point/label"].startswith("direction (1.00, −0.80, 0.60)")
@@ -385,8 +694,14 @@ def test_dragging_a_direction_turns_it_and_keeps_the_length_of_its_numbers(rig: 
     close(unit(rig.model.world_pose("/point")[:3, 3]), (0, half / 2, half / 2), atol=1e-3)
 
 
+@pytest.mark.parametrize(("numbers", "length"), [(0.001, SHORTEST), (1.0, 1.0), (5.0, ARROW)])
+def test_a_directions_arrow_is_as_long_as_it_is_where_that_can_be_seen(numbers: float, length: float) -> None:
+    s = solve(state(point=(0, numbers, 0), w=0))
+    close(s.arrow, (0, 0, length), atol=1e-12)
+
+
 def test_dragged_points_make_short_links(rig: Rig) -> None:
-    rig.show(FramesParams())
+    rig.show(PLAIN)
     rig.browser.drag("/point", (1 / 3, -2 / 3, 0.1))
     rig.settle()
     assert rig.session.params.query() == "point=0.333,0.1,0.667"
@@ -396,7 +711,7 @@ def test_dragged_points_make_short_links(rig: Rig) -> None:
 
 
 def test_table_reads_the_point_in_all_conventions() -> None:
-    p = FramesParams()
+    p = PLAIN
     (table,) = [r for r in SIM.readouts(p, solve(p)) if hasattr(r, "rows")]
     rows = {row[0]: row[1:] for row in table.rows}
     for name, words in NAMES.items():
@@ -419,5 +734,28 @@ def test_sentence_names_axes_point_and_second_reading() -> None:
     sentence, _ = described(state(to="ros"))
     assert sentence == (
         "OpenGL, right-handed: X right, Y up, Z back; point (1.00, 0.80, 0.60)\u2009m;"
-        " in ROS (−0.60, −1.00, 0.80); the matrix is a rotation."
+        " in ROS: (−0.60, −1.00, 0.80); the matrix is a rotation."
     )
+    sentence, _ = described(state(to="ros", origin=(1, 0, 0)))
+    assert "in ROS, which begins at (1.00, 0.00, 0.00): (−0.60, 0.00, 0.80)" in sentence
+
+
+def test_all_numbers_zero_is_told_as_trouble(rig: Rig) -> None:
+    rig.show(state(point=(0, 0, 0), w=0))
+    assert "s3-warn" in rig.column.html("read")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"to": "opengl"}, "second convention"),
+        ({"to": "ros"}, "ring"),
+        ({"to": "ros", "origin": (1, 0, 0)}, "direction’s do not"),
+        ({"w": 0.5}, "x/w"),
+        ({"w": 0}, "direction"),
+        ({"w": 0, "point": (0, 0, 0)}, "set one of them"),
+    ],
+)
+def test_the_caption_says_what_matters_now(changes: dict[str, Any], words: str) -> None:
+    p = state(**changes)
+    assert words in SIM.caption(p, solve(p))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 from xml.etree import ElementTree
 
@@ -15,21 +17,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, plan, solve
+from app.rooms.motion import between
+from sims.epipolar import SIM, EpipolarParams, EpipolarSolution, candidate, numbers, plan, ray, solve
 from sims.epipolar.actions import PRESETS
 from sims.epipolar.panes import panes
-from sims.epipolar.params import OTHERS
+from sims.epipolar.params import OTHERS, WORLD, title
 from sims.kit import readout
 from sims.kit.frame import INSET
 from sims.kit.readout import figure
 from sims.kit.refusals import BadParams
 from sims.kit.sim import jsonable
+from sims.kit.world import BODIES
 from tests.frames import differences
 from tests.server import Rig
 from tests.sims.markup import words, xml
 
 Array = npt.NDArray[np.float64]
 START = EpipolarParams()
+OPENED = EpipolarParams.from_query(())
 SIDES = ("left", "right")
 places = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 3))
 pans = st.floats(-60, 60)
@@ -339,6 +344,277 @@ def test_the_button_shows_noise_and_then_the_next() -> None:
     assert (noisy.noise, noisy.points, noisy.seed) == (1.0, 12, 0)
     assert noisy.changed(button(noisy)).seed == 1
     assert START.changed(button(noisy.changed({"seed": 9999}))).seed == 0
+
+
+# ---- depth along the left ray
+
+
+def slid(p: EpipolarParams) -> Iterator[EpipolarParams]:
+    """States of a sweep, in twenty parts a leg."""
+    for step in ray.sweep(p):
+        start = p
+        for k in range(1, 21 if step.seconds else 2):
+            part = k / 20 if step.seconds else 1.0
+            p = start.moved({name: between(getattr(start, name), value, part) for name, value in step.changes.items()})
+            yield p
+
+
+@each_preset
+def test_a_sweep_moves_p_prime_along_its_line_while_p_stays(name: str) -> None:
+    before = START.changed(PRESETS[name])
+    at = solve(before)
+    assert at.line_right is not None
+    seen = []
+    for p in slid(before):
+        s = solve(p)
+        assert s.pixel_left == pytest.approx(at.pixel_left, abs=1e-6)
+        assert s.pixel_right is not None, "it is before the right camera all the time"
+        assert abs(at.line_right @ [*s.pixel_right, 1.0]) < 1e-6
+        seen.append(s.pixel_right)
+    assert p.point == pytest.approx(before.point)
+    assert p.trail is not None
+    assert math.dist(min(seen), max(seen)) > 40.0, "it runs a good way"
+    near, far = (solve(p.changed({"point": ray.reached(p, depth)[1]})) for depth in p.trail)
+    trail = solve(p).trail
+    assert trail is not None
+    assert trail.pixels is not None
+    close(trail.pixels, [near.pixel_right, far.pixel_right], within=1e-6)
+
+
+def test_the_depth_has_a_slider_that_leaves_a_trail(rig: Rig) -> None:
+    rig.show(OPENED)
+    before = rig.session.solution
+    for depth in (2.0, 6.0, 4.0):
+        rig.browser.move("depth", depth)
+        rig.settle()
+        s = rig.session.solution
+        assert s.depth_left == pytest.approx(depth)
+        assert rig.column.values["depth"] == s.depth_left
+        close(s.pixel_left, before.pixel_left, within=1e-9)
+        assert math.dist(s.pixel_right, before.pixel_right) > 5.0
+    assert rig.session.params.model_dump()["trail"] == pytest.approx((2.0, 6.0))
+    close(s.trail.steps, rig.model.points("/trail_steps"), within=1e-6)
+    assert len(s.trail.steps) == 5, "one at each whole metre"
+    close(ends(rig, "/trail"), s.trail.ends, within=1e-6)
+    rig.browser.press("clear-pick")
+    rig.settle()
+    assert rig.session.params.model_dump()["trail"] is None
+    assert not rig.model.visible("/trail")
+
+
+@given(states, st.floats(0.01, 30), st.floats(0.01, 30))
+def test_a_trail_is_where_the_right_camera_sees_the_ray(p: EpipolarParams, one: float, other: float) -> None:
+    p = p.changed({"trail": (one, other)})
+    s = solve(p)
+    if s.trail is None:
+        assert s.depth_left < ray.LEAST
+        return
+    assert s.trail.near <= min(one, other, s.depth_left * (1 + 1e-12))
+    R, C = pose(p, "right")
+    for place, pixel in zip(s.trail.steps, s.trail.step_pixels, strict=True):
+        depth = float((place - C) @ R[:, 2])
+        if depth > 1e-3:
+            close(pixels(p, "right", [place])[0], pixel, within=1e-6 * max(1.0, float(np.abs(pixel).max())))
+        elif depth < -1e-9:
+            assert np.isnan(pixel).all()
+    for pixel in s.trail.pixels or ():
+        assert np.isfinite(pixel).all()
+
+
+# ---- a free pixel of the right picture
+
+
+def skew_distance(p: EpipolarParams, s: EpipolarSolution, pixel: tuple[float, float]) -> float:
+    """How far the lines of sight are apart, by the textbook's formula."""
+    ways = []
+    for side, (u, v) in (("left", s.pixel_left or (0.0, 0.0)), ("right", pixel)):
+        R, _ = pose(p, side)
+        ways.append(R @ [(u - 320) / p.focal, (v - 240) / p.focal, 1.0])
+    normal = np.cross(ways[0], ways[1])
+    return float(abs(np.subtract(p.right, p.left) @ normal) / np.linalg.norm(normal))
+
+
+@pytest.mark.parametrize("pixel", [(380.0, 300.0), (100.0, 20.0), (378.5, 250.25)])
+def test_off_the_line_no_point_gives_the_pair_and_it_is_said_how_far(pixel: tuple[float, float]) -> None:
+    p = OPENED.changed({"candidate": pixel})
+    s = solve(p)
+    c = s.candidate
+    assert c is not None
+    assert c.distance is not None
+    assert c.residual is not None
+    assert s.F is not None
+    assert s.pixel_left is not None
+    line = s.F @ [*s.pixel_left, 1.0]
+    assert c.residual == pytest.approx(line @ [*pixel, 1.0], abs=1e-12)
+    assert c.distance == pytest.approx(line @ [*pixel, 1.0] / math.hypot(line[0], line[1]), abs=1e-9)
+    assert c.foot is not None
+    assert math.dist(c.foot, pixel) == pytest.approx(abs(c.distance), abs=1e-9)
+    assert c.verdict == "off the line"
+    if c.gap is not None:
+        assert c.gap == pytest.approx(skew_distance(p, s, pixel), abs=1e-9)
+    said = SIM.caption(p, s)
+    assert said.startswith("No point in space gives this pair")
+    assert f"{abs(c.distance):.1f}" in said
+    shown = words(readout.render(SIM.readouts(p, s)))
+    assert figure(c.residual) in shown
+    assert f"{abs(c.distance):.1f}" in shown
+
+
+def test_residual_distance_and_gap_grow_together_as_it_leaves_the_line(rig: Rig) -> None:
+    p = OPENED
+    for step in candidate.free(p):
+        p = p.moved(step.changes)
+    rig.show(p)
+    begun = rig.session.solution.candidate
+    assert abs(begun.distance) == pytest.approx(candidate.AWAY)
+    found = []
+    for distance in (0.0, 5.0, 20.0, 60.0):
+        rig.browser.move("off_line", distance)
+        rig.settle()
+        c = rig.session.solution.candidate
+        assert c.distance == pytest.approx(distance, abs=1e-9)
+        close(c.foot, begun.foot, within=1e-9)
+        found.append((abs(c.residual), c.gap))
+        if distance:
+            close(ends(rig, "/candidate/gap"), c.nearest, within=1e-6)
+            assert rig.model.labels()["/candidate/place/label"] == f"gap {c.gap:.2f}\u2009m"
+    assert found[0] == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert found == sorted(found)
+    assert all(a < b for one, other in pairwise(found) for a, b in zip(one, other, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "verdict", "said"),
+    [
+        ("free on the line", "a point", "one point in space"), ("free and parallel", "at infinity", "at infinity"),
+        ("free and behind", "behind a camera", "behind a camera"), ("free without a baseline", "no line", ""),
+    ],
+)  # fmt: skip
+def test_on_the_line_the_rays_meet_or_part_or_are_parallel(name: str, verdict: str, said: str) -> None:
+    p = START.changed(SIM.states[name])
+    s = solve(p)
+    assert s.candidate is not None
+    assert s.candidate.verdict == verdict
+    assert said in SIM.caption(p, s)
+    if verdict == "a point":
+        assert s.candidate.nearest is not None
+        close(pixels(p, "right", [s.candidate.nearest[1]]), [s.candidate.pixel], within=1e-6)
+    else:
+        assert s.candidate.nearest is None
+
+
+def test_p_prime_is_held_until_it_is_free_and_then_only_q_prime() -> None:
+    _, right, *_ = panes(OPENED, solve(OPENED))
+    assert 'data-handle="right_pixel"' in right.svg
+    p = OPENED.changed({"candidate": (380.0, 300.0)})
+    left, right, *_ = panes(p, solve(p))
+    assert 'data-handle="left_pixel"' in left.svg
+    assert "right_pixel" not in right.svg
+    assert 'data-handle="candidate" data-x="380.0" data-y="300.0"' in right.svg.replace(' data-link=""', "")
+    assert SIM.handles["candidate"](p, (-5.0, 900.0)) == {"candidate": (0.0, 479.0)}
+
+
+# ---- what is read, and from where all is seen
+
+
+def shown_matrix(html: str, name: str) -> Array:
+    """A matrix as its digits say it."""
+    for formula in xml(html).iter("math"):
+        if "".join(formula.itertext()).startswith(f"{name}="):
+            entries = [[str(n.text).replace("−", "-") for n in entry.iter("mn")] for entry in formula.iter("mtd")]
+            return np.array([float(e[0]) * 10.0 ** int(e[2]) if len(e) == 3 else float(e[0]) for e in entries]).reshape(
+                3, 3
+            )
+    raise AssertionError(name)
+
+
+@pytest.mark.parametrize("name", [*PRESETS, "random 3", "random 8"])
+def test_the_digits_of_f_that_are_shown_satisfy_the_constraint_and_all_of_them_can_be_copied(name: str) -> None:
+    p = START.changed({**PRESETS[name], "points": 12}) if name in PRESETS else DRAWN[name]
+    s = solve(p)
+    html = readout.render(SIM.readouts(p, s))
+    F = shown_matrix(html, "F")
+    for left, right in zip(s.pixels_left, s.pixels_right, strict=True):
+        if np.isfinite(left).all() and np.isfinite(right).all():
+            line = F @ [*left, 1.0]
+            off = abs(line @ [*right, 1.0]) / math.hypot(line[0], line[1])
+            assert off < 0.05 * max(1.0, float(np.abs([*left, *right]).max()) / 640.0)
+    copied = [e.get("value") for e in xml(html).iter("button") if e.get("data-s3") == "copy"]
+    assert s.F is not None
+    np.testing.assert_array_equal(json.loads(str(copied[0])), s.F)
+
+
+@each_preset
+def test_the_epipolar_plane_is_not_seen_edge_on(name: str) -> None:
+    p = START.changed(PRESETS[name])
+    s = solve(p)
+    view = SIM.home(p, s)
+    assert s.drawn.plane is not None
+    a, b, _, d = s.drawn.plane
+    normal = np.cross(b - a, d - a)
+    area = float(np.linalg.norm(normal))
+    toward = np.subtract(view.look_at, view.position)
+    assert abs(normal @ toward) / area / np.linalg.norm(toward) > 0.25
+    assert min(np.linalg.norm(b - a), area / np.linalg.norm(b - a)) >= 0.99, "it is no thin strip"
+
+
+def test_sliding_along_the_ray_leaves_the_view_alone() -> None:
+    homes = {SIM.home(p, solve(p)) for p in slid(OPENED) if p.trail is not None}
+    assert len(homes) == 1
+
+
+@each_preset
+@pytest.mark.parametrize("lines", [True, False])
+def test_numbers_in_the_pictures_cover_neither_points_nor_each_other(name: str, *, lines: bool) -> None:
+    p = START.changed({**PRESETS[name], "points": 12, "show_all_lines": lines})
+    s = solve(p)
+    for pane, side in zip(panes(p, s), SIDES, strict=False):
+        spots = [tuple(each) for each in pixels_of(s, side).tolist()]
+        boxes = {
+            str(e.text): numbers.Box(
+                float(str(e.get("x"))),
+                float(str(e.get("y"))) - 0.5 * numbers.HIGH,
+                0.5 * numbers.WIDE * len(str(e.text)),
+            )
+            for e in xml(pane.svg).iter("text")
+            if str(e.text).isdecimal()
+        }
+        assert sorted(boxes, key=int) == [f"{k}" for k in range(2, 13)]
+        for text, box in boxes.items():
+            assert not any(box.covers(at, 6.0) for at in spots[1:]), text
+            assert math.dist((box.u, box.v), spots[int(text) - 1]) < 40.0, "it stands beside its point"
+            assert not any(box.meets(other) for other in boxes.values() if other is not box), text
+
+
+def test_estimating_with_too_few_points_says_what_to_do() -> None:
+    said = words(readout.render(SIM.readouts(START, solve(START))))
+    assert "takes 8 points that both cameras see; here are 6. “Estimate F, new noise” shows 12." in said
+    button: Any = next(action for action in SIM.actions if action.name == "new-sample")
+    assert button.label in said
+    assert solve(START.changed(button.run(START))).estimate.status == "found"
+
+
+def test_what_corresponds_are_corners_of_things(rig: Rig) -> None:
+    rig.show(START.changed({"points": 12}))
+    np.testing.assert_array_equal(rig.model.world_pose("/things")[:3, 3], WORLD)
+    corners = {tuple(np.round(np.add(corner, WORLD), 9)) for body in BODIES for face in body.faces for corner in face}
+    for k, place in enumerate(OTHERS.tolist(), start=2):
+        assert tuple(np.round(place, 9)) in corners
+        assert title(k) in rig.column.html("pane")
+
+
+def test_it_opens_with_an_epipole_in_a_picture_and_other_links_mean_what_they_meant() -> None:
+    s = solve(OPENED)
+    assert s.epipole_right_pixel is not None
+    assert in_frame(np.array([s.epipole_right_pixel]))
+    assert "Slide P along the left ray" in SIM.caption(OPENED, s)
+    assert "at infinity" in SIM.caption(START, solve(START))
+    assert OPENED.query() == ""
+    assert EpipolarParams.from_query([("points", "9")]) == START.changed({"points": 9})
+    assert EpipolarParams.from_query(START.query_items().items()) == START
+    for changes in ({"left_pan": -8.0}, {"left": OPENED.left}, {**PRESETS["sight"], "points": 3}):
+        p = START.changed(changes)
+        assert EpipolarParams.from_query(p.query_items().items()) == p
 
 
 # ---- shown equals drawn

@@ -15,10 +15,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sims.gimbal_lock import SIM, GimbalParams, meshes, solve
+from sims.gimbal_lock import SIM, GimbalParams, digits, meshes, rings, solve
 from sims.gimbal_lock.params import NEAR, NEAR_PITCH
 from sims.gimbal_lock.scene import PER_RATE
 from sims.kit import readout
+from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Action, Step
 from tests.server import Rig
 from tests.sims.markup import words, xml
@@ -152,7 +153,7 @@ def test_pivots_stay_where_they_are_while_their_ring_turns(rig: Rig, ring: str, 
 def test_every_ring_turns_freely_inside_what_holds_it() -> None:
     """Between the spheres that two neighbours sweep there is a gap; the aircraft has one too."""
     spheres = []
-    for ring in meshes.RINGS:
+    for ring in rings.RINGS:
         reach = np.linalg.norm(meshes.ring(ring).vertices, axis=1)
         spheres.append((reach.min(), reach.max()))
     for (inside, _), (_, outside) in pairwise(spheres):
@@ -169,14 +170,14 @@ def test_the_aircraft_fits_in_the_inner_ring(rig: Rig) -> None:
 
 
 def test_bodies_are_closed_outwards_and_light() -> None:
-    bodies = [make(ring) for ring in meshes.RINGS for make in (meshes.ring, meshes.pivots)]
+    bodies = [make(ring) for ring in rings.RINGS for make in (meshes.ring, meshes.pivots)]
     for body in (*bodies, meshes.mount(1.0)):
         whole = body.copy()
         whole.merge_vertices()
         whole.update_faces(whole.nondegenerate_faces())  # an edge that ends on the axis makes them
         assert whole.is_watertight
         assert whole.volume > 0.0
-    sent = [*bodies, meshes.stand(), *(meshes.stripe(ring) for ring in meshes.RINGS)]
+    sent = [*bodies, meshes.stand(), *(meshes.stripe(ring) for ring in rings.RINGS)]
     assert sum(12 * (len(body.vertices) + len(body.faces)) for body in sent) < 400_000
 
 
@@ -188,6 +189,135 @@ def test_rings_differ_by_colour_dashes_and_letter(rig: Rig) -> None:
     assert dashes[0] > dashes[1] > dashes[2] == 1
     labels = rig.model.labels()
     assert [labels[f"{HOLDERS[ring]}/label"] for ring in RINGS] == ["Z yaw 0°", "Y pitch 0°", "X roll 0°"]
+
+
+# ---- held by their grips
+
+
+@pytest.mark.parametrize("changes", [*POSES, {"yaw": -20, "pitch": -150, "roll": 91}])
+def test_each_ring_is_held_on_itself_half_way_between_its_pivots(rig: Rig, changes: dict[str, Any]) -> None:
+    rig.show(state(**changes))
+    assert set(rig.model.draggable()) == {ring.grip for ring in rings.RINGS}
+    for ring in rings.RINGS:
+        place = rig.model.world_pose(ring.grip)[:3, 3]
+        on_ring = np.linalg.norm(rig.model.points(f"{RINGS[ring.name]}/ring") - place, axis=1)
+        assert on_ring.min() < 0.1, "the grip is off its ring"
+        assert abs(place @ drawn_axis(rig, ring.name)) == pytest.approx(ring.radius * math.sqrt(0.5), abs=1e-6)
+
+
+@given(p=any_state, turned=angles, ring=st.sampled_from(rings.RINGS))
+def test_a_ring_turns_to_where_its_grip_is_led(p: GimbalParams, turned: float, ring: rings.Ring) -> None:
+    """To the place where the grip would be at an angle; how far out on its axis's plane doesn't matter."""
+    aim = solve(p.changed({ring.angle: turned})).grips[rings.RINGS.index(ring)]
+    axis = solve(p).axes[:, rings.RINGS.index(ring)]
+    for place in (aim, aim + 0.3 * axis, aim + 0.5 * (aim - axis * (axis @ aim))):
+        found = p.changed(SIM.handles[ring.grip](p, tuple(place.tolist())))
+        assert math.remainder(getattr(found, ring.angle) - turned, 360.0) == pytest.approx(0.0, abs=1e-9)
+        assert {n for n in ("yaw", "pitch", "roll") if getattr(found, n) != getattr(p, n)} <= {ring.angle}
+    assert SIM.handles[ring.grip](p, tuple((0.7 * axis).tolist())) == {}, "a place on its axis means no angle"
+
+
+@pytest.mark.parametrize("changes", [{}, {"yaw": 150, "pitch": 60, "roll": -100}, {"pitch": 90, "yaw": 179}])
+@pytest.mark.parametrize("ring", rings.RINGS, ids=lambda ring: ring.name)
+def test_a_hand_leads_a_ring_all_round_without_a_jump(rig: Rig, ring: rings.Ring, changes: dict[str, Any]) -> None:
+    """The pointer goes where the grip is seen from the viewer's place; past ±180° too."""
+    p = state(**changes)
+    rig.show(p)
+    start = getattr(p, ring.angle)
+    eye = np.asarray(rig.browser.client.camera.position)
+    turns = np.arange(15.0, 361.0, 15.0)
+    where = [p.changed({ring.angle: math.remainder(start + turn, 360.0)}) for turn in turns]
+    for aim in where:
+        place = solve(aim).grips[rings.RINGS.index(ring)]
+        seen = eye + 0.8 * (place - eye)  # on the way from the eye to it: in the plane of the drag, not on the ring
+        rig.browser.drag(ring.grip, tuple(seen.tolist()))
+        rig.settle()
+        off = math.remainder(getattr(rig.session.params, ring.angle) - getattr(aim, ring.angle), 360.0)
+        assert off == pytest.approx(0.0, abs=0.05)
+
+
+# ---- three lamps
+
+
+@pytest.mark.parametrize("pitch", [0.0, 30.0, 60.0, 85.0, 89.9, 90.0, -90.0, 135.0])
+def test_lamps_are_lit_as_much_as_there_are_ways_to_turn(rig: Rig, pitch: float) -> None:
+    p = state(pitch=pitch, yaw=20)
+    rig.show(p)
+    values = np.linalg.svd(solve(p).axes)[1]
+    html = next(each.html() for each in SIM.readouts(p, solve(p)))
+    assert words(html).endswith(f"{np.linalg.matrix_rank(solve(p).axes, rtol=1e-6)} ways to turn")
+    shown = [
+        float(found or 0.0) for found in re.findall(r'<i class="s3-lamp(?: s3-out"|" style="--glow:([\d.]+))', html)
+    ]
+    np.testing.assert_allclose(shown, np.minimum(values, 1.0), rtol=0, atol=6e-4)
+    locked = solve(p).dof == 2
+    assert html.count("×") == locked, "a lamp that is out isn't told by its colour alone"
+    green = [rig.model.node(f"/lamps/{k}").props["color"][1] for k in range(3)]
+    assert green == sorted(green, reverse=True)
+    assert (green[2] < 70) == (values[2] < 0.01)
+    assert rig.model.labels()["/lamps/label"] == ("⚠ 2 ways to turn" if locked else "3 ways to turn")
+
+
+def test_the_sim_opens_with_what_there_is_to_see() -> None:
+    caption = SIM.caption(START, solve(START))
+    assert caption.startswith("Three rings, three ways to turn.")
+    first = readout.folded(SIM.readouts(START, solve(START)))[""]
+    assert words(readout.render(first)).startswith("3 ways to turn")
+    assert "singular" not in words(readout.render(first))
+
+
+def test_the_reach_is_off_at_first_and_then_round_the_aircraft(rig: Rig) -> None:
+    rig.show(START)
+    assert not rig.model.visible("/reach/shape")
+    rig.show(state(show_reach=True))
+    wing = max(np.linalg.norm(rig.model.points(f"{RINGS['inner']}/{part}"), axis=1).max() for part in ("hull", "mark"))
+    assert min(rig.model.node("/reach/shape/ball").props["scale"]) > wing
+
+
+@pytest.mark.parametrize(("theme", "red"), [(False, LIGHT.line("x")), (True, DARK.line("x"))])
+def test_the_lost_axis_is_not_in_the_red_of_x(theme: bool, red: tuple[int, int, int]) -> None:
+    with Rig(SIM, state(pitch=90), dark=theme) as rig:
+        for name in ("/reach/lost/arrow", "/reach/lost/opposite", "/reach/weak/axis"):
+            colors = np.unique(np.reshape(rig.model.node(name).props["colors"], (-1, 3)), axis=0)
+            assert len(colors) == 1
+            assert np.abs(colors[0].astype(int) - red).max() > 60
+
+
+# ---- near lock
+
+
+@pytest.mark.parametrize(
+    ("pitch", "said"),
+    [(90, "90°"), (89.9, "89.9°"), (89.97, "89.97°"), (-90.002, "−90.002°"), (89.99999, "89.99999°"), (44.9, "45°")],
+)
+def test_only_lock_is_called_lock(rig: Rig, pitch: float, said: str) -> None:
+    p = state(pitch=pitch)
+    rig.show(p)
+    assert rig.model.labels()["/outer/label"] == f"Y pitch {said}"
+    assert f"pitch {said}" in SIM.describe(p, solve(p))
+
+
+@pytest.mark.parametrize("pitch", [80.0, 89.0, 89.9, 89.99, 89.9995, 90.0])
+def test_a_small_number_is_no_zero(pitch: float) -> None:
+    p = state(pitch=pitch)
+    least = solve(p).singular_values.item(2)
+    for text in (digits.small(least), digits.small(solve(p).conditioning)):
+        assert (float(text) == 0.0) == (solve(p).dof == 2)
+    assert float(digits.small(least)) == pytest.approx(least, rel=0.05, abs=1e-9)
+    said = words(readout.render(SIM.readouts(p, solve(p))))
+    assert SIM.panes is not None
+    assert digits.small(least) in SIM.panes(p, solve(p))[0].note
+    assert ("still 3 degrees of freedom" in said) == solve(p).near
+
+
+def test_what_near_lock_costs_is_said_first() -> None:
+    p = state(pitch=89.93)
+    s = solve(p)
+    times = np.abs(np.linalg.inv(s.axes) @ np.linalg.svd(s.axes)[0][:, 2]).max()
+    assert f"{times:.0f}× as fast" in SIM.caption(p, s)
+    assert f"{times:.1f}" in words(readout.render(readout.folded(SIM.readouts(p, s))[""]))
+    locked = state(pitch=90)
+    assert "∞" in words(readout.render(readout.folded(SIM.readouts(locked, solve(locked)))[""]))
 
 
 # ---- what they reach
@@ -364,9 +494,19 @@ def frames(name: str, start: GimbalParams) -> list[GimbalParams]:
     assert not isinstance(steps, Mapping)
     for step in steps:
         assert isinstance(step, Step)
-        assert 0.0 <= step.seconds <= 1.6
+        assert 0.0 <= step.seconds <= (1.6 if step.changes else 2.0)
         states.append(states[-1].changed(step.changes))
     return states
+
+
+@pytest.mark.parametrize("name", ["lock", "same-motion", "try-lost"])
+@pytest.mark.parametrize("changes", [{}, {"pitch": 90, "yaw": 170}])
+def test_every_leg_of_a_motion_says_what_is_to_be_seen(changes: dict[str, Any], name: str) -> None:
+    steps = [step for step in action(name).run(state(**changes)) if isinstance(step, Step)]
+    assert all(step.words for step in steps if step.seconds)
+    assert all(step.words.endswith(".") and len(step.words) <= 120 for step in steps[:-1]), "the caption flickers"
+    said = list(dict.fromkeys(step.words for step in steps if step.words))
+    assert len(said) == {"lock": 1, "same-motion": 3, "try-lost": 3}[name] + (name != "lock" and not changes)
 
 
 def between(a: GimbalParams, b: GimbalParams) -> float:
@@ -483,7 +623,7 @@ def test_plot_marks_the_smallest_singular_value(pitch: float) -> None:
     p = state(pitch=pitch)
     assert SIM.panes is not None
     svg = SIM.panes(p, solve(p))[0].svg
-    mark = re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)"', svg)
+    mark = re.search(r'data-handle="effort" data-x="([\d.]+)" data-y="([\d.]+)"', svg)
     assert mark is not None
     u, v = float(mark[1]), float(mark[2])
     assert u == pytest.approx(44.0 + 262.0 * abs(pitch) / 180.0, abs=0.06)
@@ -493,3 +633,10 @@ def test_plot_marks_the_smallest_singular_value(pitch: float) -> None:
     assert curve is not None
     points = np.array([[float(n) for n in pair.split()] for pair in curve[1].split("L")])
     assert np.interp(u, points[:, 0], points[:, 1]) == pytest.approx(v, abs=0.5)
+
+
+@pytest.mark.parametrize(("start", "value", "pitch"), [(20, 65, 65), (-20, 65, -65), (0, 200, 180), (-90, -5, 0)])
+def test_the_mark_of_the_plot_turns_the_middle_ring_on_its_side(start: float, value: float, pitch: float) -> None:
+    p = state(pitch=start)
+    found = p.changed(SIM.handles["effort"](p, (value, 0.3)))
+    assert found.pitch == pitch

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from sims.kit.frame import INSET, across, border, inside
 from sims.kit.palette import LIGHT
-from sims.kit.pane import Pane, Picture, content
+from sims.kit.pane import Pane, Picture, content, figure, still
+from sims.kit.readout import Chain, Link
 from tests.sims.markup import bad_attributes, mistakes, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -258,6 +259,31 @@ def test_a_curve_runs_through_its_points() -> None:
 def test_a_picture_takes_the_whole_width_where_told() -> None:
     assert not Picture("p", "P").pane().wide
     assert Picture("p", "P").pane("note", wide=True).wide
+
+
+def test_a_large_picture_says_so_and_has_its_line_over_it() -> None:
+    line = Chain("Steps", [Link("", "first", "1"), Link("× 2", "second", "2", "factor")]).html()
+    large = Picture("p", "P").pane("note", large=True, line=line)
+    assert "s3-large" in figure(large)
+    assert "s3-large" not in figure(Picture("p", "P").pane())
+    assert content(large).endswith(line + large.svg)
+    assert still(large).startswith(line)
+
+
+def test_areas_have_their_colour_and_cover_those_before_them() -> None:
+    picture = Picture("p", "P")
+    picture.areas(
+        [("red", [[(0, 0), (1, 0), (1, 1)], [(2, 2), (3, 2), (3.25, 3)]]), ("blue", [[(0, 0), (5, 0), (5, 5)]])]
+    )
+    picture.areas([("grey", [[(0, 0), (1, 0), (1, 1)]])], edges=False)
+    picture.areas([])
+    groups = [e for e in xml(picture.pane().svg).iter("g") if list(e.iter("path"))]
+    drawn = [[(e.get("fill"), e.get("d")) for e in group.iter("path")] for group in groups[1:]]
+    assert drawn == [
+        [("red", "M0.0 0.0L1.0 0.0L1.0 1.0zM2.0 2.0L3.0 2.0L3.2 3.0z"), ("blue", "M0.0 0.0L5.0 0.0L5.0 5.0z")],
+        [("grey", "M0.0 0.0L1.0 0.0L1.0 1.0z")],
+    ]
+    assert [group.get("class") for group in groups[1:]] == ["s3-faces", None]
 
 
 # ---- links

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 from urllib.parse import parse_qsl
 
@@ -11,7 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, ValidationError
 
+from sims.kit.entered import NotMeant, entered
 from sims.kit.fields import Choice, Letters, Numbers, OptionalNumber, Slider, Switch, Text, Vector
+from sims.kit.offers import Offers
 from sims.kit.params import Params
 from sims.kit.refusals import BadParams
 from sims.kit.spelling import clipped, plain, spell
@@ -35,6 +38,30 @@ class Toy(Params):
 
     def bounds(self, name: str) -> tuple[float, float]:
         return (-90.0, 90.0) if name == "turn" and self.half else super().bounds(name)
+
+
+class Framed(Params):
+    """A place whose bounds depend on the size of a frame."""
+
+    width: Annotated[int, Slider(10, 100, step=1, title="Width")] = 50
+    """A whole number"""
+    place: Annotated[tuple[float, float], Vector((0.0, 0.0), (100.0, 20.0), step=1, title="Place")] = (10.0, 10.0)
+    """In the frame"""
+
+    def ranges(self, name: str) -> Sequence[tuple[float, float]]:
+        return ((0.0, float(self.width)), (0.0, 20.0)) if name == "place" else super().ranges(name)
+
+
+def test_bounds_of_a_vectors_entries_can_depend_on_the_state() -> None:
+    start = Framed()
+    assert start.moved({"place": (70.0, 30.0)}).place == (50.0, 20.0)
+    assert start.moved({"width": 100}).moved({"place.0": 70.0}).place == (70.0, 10.0)
+    assert start.moved({"place": (40.0, 10.0)}).moved({"width": 20}).place == (20.0, 10.0)
+    with pytest.raises(ValidationError, match="from 0 to 50"):
+        start.changed({"place": (70.0, 10.0)})
+    with pytest.raises(NotMeant, match="from 0 to 50"):
+        entered(Offers(start), "place.0", "70")
+    assert entered(Offers(start.moved({"width": 100})), "place.0", "70") == {"place.0": 70.0}
 
 
 def read(query: str) -> Toy:

@@ -9,7 +9,25 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sims.kit.readout import Formula, Note, Readout, Table, figure, math, mathml, quantity, render, row, symbol
+from sims.kit.readout import (
+    Chain,
+    Copied,
+    Formula,
+    Lamps,
+    Link,
+    Note,
+    Readout,
+    Table,
+    figure,
+    math,
+    mathml,
+    quantity,
+    render,
+    row,
+    significant,
+    symbol,
+    under,
+)
 from tests.sims.markup import bad_numbers, mistakes, words, xml
 
 HOSTILE = "<script>alert('&')</script>\"x\""
@@ -71,8 +89,49 @@ def test_a_matrix_is_written_by_rows(shape: tuple[int, ...]) -> None:
     assert table == ([[columns] * rows] if shape else [])
 
 
+def test_each_column_of_a_matrix_may_have_its_own_digits() -> None:
+    numbers = [e.text for e in xml(mathml([[1.0, -0.25], [0.0, 2.0]], (0, 2))).iter("mn")]
+    assert numbers == ["1", "−0.25", "0", "2.00"]
+
+
+def test_words_stand_under_a_vector() -> None:
+    (node,) = xml(under(mathml([1.0, 2.0]), "a & b"))
+    assert node.tag == "munder"
+    assert [child.tag for child in node] == ["mtable", "mtext"]
+    assert node[1].text == "a & b"
+
+
 def test_a_percent_sign_does_no_harm_beside_a_matrix() -> None:
     assert "%" not in mathml(np.eye(2))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (1.0, "1.0000"), (-0.25, "−2.5000·10−1"), (1.2345678e-7, "1.2346·10−7"), (1e-15, "0"),
+        (-65432100.0, "−6.5432·107"),
+    ],
+)  # fmt: skip
+def test_entries_with_powers_of_ten_have_as_many_digits_each(value: float, text: str) -> None:
+    matrix = np.full((2, 2), 1.0)
+    matrix[0, 1] = value
+    entries = ["".join(entry.itertext()) for entry in xml(significant(matrix)).iter("mtd")]
+    assert entries == ["1.0000", text, "1.0000", "1.0000"]
+
+
+def test_what_a_button_copies_stands_in_it() -> None:
+    html = Formula("Matrix & more", "M", mathml(np.eye(2)), copy='[["<1>"]]').html()
+    (button,) = xml(html).iter("button")
+    assert (button.get("value"), button.get("aria-label")) == ('[["<1>"]]', "Copy: Matrix & more")
+    assert not list(xml(Formula("Matrix", "M", mathml(np.eye(2))).html()).iter("button"))
+
+
+def test_rows_can_be_those_of_cameras_and_have_their_letters() -> None:
+    html = mathml([[1.0, 2.0], [3.0, 4.0]], 1, rows=("left", "right"))
+    letters, matrix = re.findall(r"<mtable.*?</mtable>", html)
+    assert re.findall(r'class="s3-(left|right)"><mi>(.)</mi>', letters) == [("left", "L"), ("right", "R")]
+    entries = re.findall(r'<mtd class="(.*?)"><mn>(.*?)</mn>', matrix)
+    assert entries == [("s3-left", "1.0"), ("s3-left", "2.0"), ("s3-right", "3.0"), ("s3-right", "4.0")]
 
 
 def test_a_tuple_is_written_in_a_row() -> None:
@@ -133,8 +192,9 @@ def test_a_warning_has_an_icon_that_screen_readers_skip(level: str, icon: bool) 
         Formula(HOSTILE, symbol(HOSTILE, HOSTILE), mathml(1.0), HOSTILE).html(),
         Table(HOSTILE, [(HOSTILE, HOSTILE), (HOSTILE, HOSTILE)]).html(),
         Note(HOSTILE, "warn").html(),
+        Chain(HOSTILE, [Link(HOSTILE, HOSTILE, HOSTILE, HOSTILE)]).html(),
     ],
-    ids=["formula", "table", "note"],
+    ids=["formula", "table", "note", "chain"],
 )
 def test_words_are_escaped(html: str) -> None:
     assert "<script" not in html
@@ -160,3 +220,29 @@ def test_rows_after_those_that_can_be_selected_may_light_up_and_are_no_buttons()
     assert [len(list(e.iter("button"))) for e in rows] == [1, 0, 0]
     assert [e.get("class") for e in rows] == ["s3-selected", None, None]
     assert "True &amp; fair" in table.html()
+
+
+def test_a_chain_has_each_step_with_what_leads_to_it() -> None:
+    chain = Chain("The way", [Link("", "world", "(1, 2)"), Link("K", "pixel", "(3, 4)", "fx fy")])
+    assert not mistakes(chain.html())
+    steps = list(xml(chain.html()).iter("li"))
+    assert [[part.text for part in step] for step in steps] == [["world", "(1, 2)"], ["K", "pixel", "(3, 4)"]]
+    assert [step.get("data-link") for step in steps] == [None, "fx fy"]
+
+
+def test_lamps_say_how_many_are_lit_and_mark_those_that_are_out() -> None:
+    html = Lamps("2 ways & more", (1.0, 0.25, 0.0)).html()
+    assert not mistakes(html)
+    assert 'aria-label="2 of 3 lamps lit"' in html
+    assert html.count("--glow:0.250") == 1
+    assert html.count("s3-out") == html.count("×") == 1
+    assert words(html).endswith("2 ways & more")
+
+
+def test_a_text_to_copy_is_in_its_button_unchanged() -> None:
+    text = 'from_euler("ZYX", [1, -2, 3]) <&>'
+    html = Copied("Euler & co", text).html()
+    assert not mistakes(html)
+    button = next(xml(html).iter("button"))
+    assert button.get("value") == next(xml(html).iter("code")).text == text
+    assert button.get("aria-label") == "Copy: Euler & co"

@@ -52,3 +52,16 @@ def test_nobody_steps_back_for_what_runs_away() -> None:
     sim = by_slug("coordinate-frames")
     assert sim is not None
     assert home(sim, w=0.001) == sim.view
+
+
+def test_a_view_from_just_one_place_never_steps_back_and_the_page_hears_that_it_was_moved() -> None:
+    camera = by_slug("camera")
+    assert camera is not None
+    exact = View((1.0, 2.0, 3.0), (1.0, 3.0, 3.0), 0.0)
+    assert exact.holding([(50.0, 0.0, 0.0)]) is exact
+    with Rig(camera) as rig:
+        rig.show(camera.params().changed({"through": True}))
+        rig.show(camera.params())
+        told = [message for message in rig.browser.told if message["type"] == "home"]
+        radius = camera.view.radius
+        assert [(each["radius"], each["moved"]) for each in told] == [(radius, False), (0.0, True), (radius, False)]

@@ -15,7 +15,7 @@ from geometry.camera import Camera, aim, pan_tilt_roll
 from geometry.projection import frame_planes
 from sims.kit.pane import Picture
 from sims.kit.world import BODIES, NAMES, POINTS, TITLES
-from sims.kit.world_drawing import FILLS, OF_FACE, PAINTER, draw_in_picture
+from sims.kit.world_drawing import FILLS, MARGIN, OF_FACE, PAINTER, draw_in_picture
 from tests.geometry.test_painting import UNSURE, planes, rays, topmost
 
 Array = npt.NDArray[np.float64]
@@ -102,7 +102,7 @@ def test_the_picture_has_the_painted_faces_in_their_order() -> None:
     svg = picture.pane().svg.partition('class="s3-faces"')[2]
     drawn = [outline for path in re.findall(r' d="([^"]+)"', svg) for outline in re.findall(r"M([^z]+)z", path)]
     nearest = view.depth_row - (0.0, 0.0, 0.0, 1e-3)
-    painted = PAINTER.paint(view.P, np.vstack([frame_planes(view.P, 640, 480) + 3.0 * view.P[2], nearest]))
+    painted = PAINTER.paint(view.P, np.vstack([frame_planes(view.P, 640, 480) + MARGIN * view.P[2], nearest]))
     assert len(drawn) == len(painted) > 30
     for outline, (_, corners) in zip(drawn, painted, strict=True):
         found = np.array([pair.split() for pair in outline.split("L")], dtype=float)

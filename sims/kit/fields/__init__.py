@@ -9,7 +9,7 @@ how its values are read from a link, what is allowed in words, and how a live co
 
 from sims.kit.fields.kind import Kind
 from sims.kit.fields.numbers import NumberBox, Numbers, Numeric, OptionalNumber, Slider, Vector
-from sims.kit.fields.words import Choice, Letters, Switch, Text
+from sims.kit.fields.words import Choice, Letters, Opened, Switch, Text
 
 __all__ = [
     "Choice",
@@ -18,6 +18,7 @@ __all__ = [
     "NumberBox",
     "Numbers",
     "Numeric",
+    "Opened",
     "OptionalNumber",
     "Slider",
     "Switch",

@@ -34,16 +34,16 @@ class Numeric(Kind):
         """The numbers that a value holds."""
         return () if value is None else (value,)
 
-    def clamped(self, value: Any, bounds: Range) -> Any:
-        """The value within its bounds."""
-        kept = [min(max(v, low), high) for v, (low, high) in self._bounded(value, bounds)]
+    def clamped(self, value: Any, ranges: Sequence[Range]) -> Any:
+        """The value with each of its numbers within its range."""
+        kept = [min(max(v, low), high) for v, (low, high) in self._bounded(value, ranges)]
         return tuple(kept) if isinstance(value, tuple) else kept[0] if kept else None
 
-    def within(self, value: Any, bounds: Range) -> bool:
-        return all(low <= v <= high for v, (low, high) in self._bounded(value, bounds))
+    def within(self, value: Any, ranges: Sequence[Range]) -> bool:
+        return all(low <= v <= high for v, (low, high) in self._bounded(value, ranges))
 
-    def _bounded(self, value: Any, bounds: Range) -> Iterable[tuple[float, Range]]:
-        return zip(self.entries(value), self.ranges(value, bounds), strict=False)  # pydantic judges how many there are
+    def _bounded(self, value: Any, ranges: Sequence[Range]) -> Iterable[tuple[float, Range]]:
+        return zip(self.entries(value), ranges, strict=False)  # pydantic judges how many there are
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,18 @@ class Choice(Kind):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Opened(Choice):
+    """A choice that is made by opening a fold: to close it goes back to `closed`.
+
+    `folds` are the titles of the folds by their words; each of the sim's pictures, read-outs and nodes comes with its
+    own. On a page without folds it is a dropdown as any other.
+    """
+
+    folds: Mapping[str, str]
+    closed: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Text(Kind):
     """A few characters in a format of their own, or None, the default; `allowed` says the format to people.
 

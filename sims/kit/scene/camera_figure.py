@@ -32,6 +32,11 @@ class CameraFigure:
         self.picture = stage.sheet(f"{name}/picture", role, opacity=0.12)
         self._letter = stage.label(f"{name}/letter", letter)
 
+    def show(self, visible: bool) -> None:
+        """Show or hide the body with its letter; who looks through a camera doesn't see it."""
+        for node in (*self._solids, self._letter):
+            node.show(visible)
+
     def draw(
         self, corners: npt.NDArray[np.float64], size: float = 1.0, back: npt.NDArray[np.float64] | None = None
     ) -> None:

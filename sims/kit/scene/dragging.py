@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from sims.kit.types import Place
+from sims.kit.types import Place, Vector
+
+Path = Callable[[Place, Place], Place]
+"""From where a node is and where it is pulled to where it may go."""
+STRIDE = math.radians(60.0)
+"""How far round a circle one pull leads at most: a node doesn't jump to the circle's far side."""
 
 
-def listen(handle: Any, drag: Callable[[Place], None]) -> None:
+def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None) -> None:
     """Tell `drag` the place (world, metres) to which the pointer pulls a node of viser's.
 
-    The node moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
+    The node moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One
+    with a path goes where that leads.
     """
     offset = np.zeros(3)
     origin = np.zeros(3)
@@ -24,7 +32,9 @@ def listen(handle: Any, drag: Callable[[Place], None]) -> None:
             origin = np.array(handle.position)
             offset = origin - np.array(event.start_position)
         target = np.array(event.end_position) + offset
-        if straight:
+        if path is not None:
+            target = np.array(path(tuple(handle.position), tuple(target)))
+        elif straight:
             pull = target - origin
             keep = np.argmax(np.abs(pull))
             target = origin + np.where(np.arange(3) == keep, pull, 0.0)
@@ -37,3 +47,29 @@ def listen(handle: Any, drag: Callable[[Place], None]) -> None:
     @handle.on_drag("left", modifier="shift")  # type: ignore[untyped-decorator]
     async def _(event: Any) -> None:
         moved(event, straight=True)
+
+
+def on_circle(at: Vector, axis: Vector, eye: Vector, pulled: Vector) -> Place:
+    """Where a node at `at` goes on its circle about a unit axis through the origin, pulled by whoever looks from `eye`.
+
+    That is the place on the circle nearest to the ray from the eye through `pulled`, within a stride.
+    """
+    normal, start = np.asarray(axis, dtype=float), np.asarray(at, dtype=float)
+    middle = normal * (normal @ start)
+    spoke = start - middle
+    turns = np.linspace(-STRIDE, STRIDE, 241)
+    ray = np.subtract(pulled, eye)
+    ray /= np.sqrt(ray @ ray)
+
+    def places(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        turned = np.stack([np.cos(angles), np.sin(angles)], axis=1) @ [spoke, np.cross(normal, spoke)]
+        return np.asarray(middle + turned)
+
+    across = places(turns) - eye
+    gaps = (across * across).sum(axis=1) - (across @ ray) ** 2
+    k = int(np.clip(gaps.argmin(), 1, len(turns) - 2))
+    before, here, after = gaps[k - 1 : k + 2].tolist()
+    curved = before - 2.0 * here + after
+    between = 0.5 * (before - after) / curved if curved > 0.0 else 0.0  # the lowest place of a parabola through three
+    x, y, z = places(turns[k] + (turns[1] - turns[0]) * np.clip([between], -1.0, 1.0))[0].tolist()
+    return x, y, z

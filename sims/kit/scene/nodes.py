@@ -125,7 +125,7 @@ class Cloud(Node):
         self._stress = STRESS if on else 1.0
         self.size(self._size)
 
-    def points(self, points: npt.NDArray[np.float64]) -> None:
+    def points(self, points: npt.NDArray[np.floating[Any]]) -> None:
         """Move the dots to places (n, 3)."""
         if self.differs("points", points):
             set_property(self.handle, "points", points.astype(np.float32))

@@ -71,6 +71,14 @@ class Stage:
         self._home(position, look_at, radius)
         view.look(self.client.camera, position, look_at, radius)
 
+    def look_through(self, window: view.Window) -> None:
+        """See the scene as through a window; the sim's view of such a state is from the same place, with radius 0."""
+        view.look_through(self.client.camera, window)
+
+    def stand_back(self) -> None:
+        """See the scene upright and as wide as usual again; the sim's view of the state says from where."""
+        view.stand_back(self.client.camera)
+
     def linked(self, name: str, *nodes: Node) -> None:
         """Highlight nodes together with all else that is linked under a name: a control, entries of a matrix."""
         self._linked.setdefault(name, []).extend(nodes)
@@ -119,9 +127,10 @@ class Stage:
         )  # fmt: skip
         return Lines(handle, rgb, dash)
 
-    def strokes(self, name: str, roles: Sequence[str], *, width: float = 2.0) -> Strokes:
+    def strokes(self, name: str, roles: Sequence[str], *, width: float = 2.0, faint: bool = False) -> Strokes:
         """One straight piece in the colour of each role; they begin without length."""
-        colors = np.array([[self.palette.line(role)] * 2 for role in roles], np.uint8)
+        color = self.palette.faint if faint else self.palette.line
+        colors = np.array([[color(role)] * 2 for role in roles], np.uint8)
         handle = self.scene.add_line_segments(
             name, points=np.zeros(colors.shape), colors=colors, thickness=width, thickness_units="screen"
         )
@@ -189,10 +198,14 @@ class Stage:
         self.mesh(f"{name}/hull", parts["hull"], self.palette.solid if ghost is None else "ghost", opacity=hull)
         self.mesh(f"{name}/mark", parts["mark"], "held", opacity=mark)
 
-    def grip(self, name: str, radius: float, role: str = "held", *, halo: float = 1.7) -> Grip:
+    def grip(
+        self, name: str, radius: float, role: str = "held", *, halo: float = 1.7,
+        axis: Callable[[], Vector] | None = None,
+    ) -> Grip:  # fmt: skip
         """A ball that the pointer can drag, with a ring `halo` times as wide; the session hears of it under `name`.
 
-        It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull.
+        It moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One with
+        an `axis`, a unit vector through the world's origin, stays on its circle about that.
         """
         ball = self.ball(name, radius, role)
         ring = trimesh.creation.torus(
@@ -202,8 +215,11 @@ class Stage:
             self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
             for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])])
         ]
-        dragging.listen(ball.handle, partial(self._drag, name))
+        dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return Grip(ball.handle, rings)
+
+    def _round(self, axis: Callable[[], Vector]) -> dragging.Path:
+        return lambda at, pulled: dragging.on_circle(at, axis(), self.client.camera.position, pulled)
 
     def link(self, node: Node, name: str) -> None:
         """A click on the node selects `name`, as a click on its mark in a picture or its row in a table does."""

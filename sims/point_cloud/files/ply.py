@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.clouds import Indices
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files.columns import CloudFileError, Table, Values, declared, enough
 from sims.point_cloud.files.numbers import rows, stream
@@ -88,8 +89,11 @@ def read_ply(data: bytes) -> Table:
     return declared(columns, unit=unit, unit_from="as a comment in the file says")
 
 
-def ply_bytes(cloud: Cloud) -> bytes:
-    """Return the cloud as binary PLY: coordinates as doubles, and the colours, intensities and normals that it has."""
+def ply_bytes(cloud: Cloud, labels: Indices | None = None, meaning: str = "", faces: Indices | None = None) -> bytes:
+    """Return the cloud as binary PLY: coordinates as doubles, and the colours, intensities and normals that it has.
+
+    Of each point a `label` (N,) may follow, a whole number with its `meaning`; and triangles (T, 3) between the points.
+    """
     columns: dict[str, Values] = {name: cloud.points[:, k].astype("<f8") for k, name in enumerate("xyz")}
     if cloud.normals is not None:
         columns |= {name: cloud.normals[:, k].astype("<f4") for k, name in enumerate(("nx", "ny", "nz"))}
@@ -98,13 +102,20 @@ def ply_bytes(cloud: Cloud) -> bytes:
     if cloud.intensity is not None:
         low, high = cloud.intensity_span or (0.0, 1.0)
         columns["intensity"] = (low + (high - low) * cloud.intensity).astype("<f4")
+    if labels is not None:
+        columns["label"] = labels.astype("<i4")
     table = np.empty(len(cloud), np.dtype([(name, values.dtype.str) for name, values in columns.items()]))
     for name, values in columns.items():
         table[name] = values
-    kinds = {"<f8": "double", "<f4": "float", "|u1": "uchar"}
-    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(cloud)}"]
+    kinds = {"<f8": "double", "<f4": "float", "|u1": "uchar", "<i4": "int"}
+    lines = ["ply", "format binary_little_endian 1.0", *([f"comment label: {meaning}"] if labels is not None else [])]
+    lines.append(f"element vertex {len(cloud)}")
     lines += [f"property {kinds[values.dtype.str]} {name}" for name, values in columns.items()]
-    return "\n".join([*lines, "end_header", ""]).encode() + table.tobytes()
+    triangles = np.empty(0 if faces is None else len(faces), [("count", "u1"), ("corners", "<i4", 3)])
+    if faces is not None:
+        lines += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
+        triangles["count"], triangles["corners"] = 3, faces
+    return "\n".join([*lines, "end_header", ""]).encode() + table.tobytes() + triangles.tobytes()
 
 
 def _header(data: bytes) -> tuple[list[list[str]], int]:

@@ -1,0 +1,186 @@
+"""epipolar: a stereo pair of one's own, as OpenCV, Kalibr and ROS write it, against OpenCV."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from sims.epipolar import SIM, EpipolarParams, solve
+from sims.epipolar.calibration import EXAMPLE, changes, read
+from sims.epipolar.own import OwnPair
+from sims.kit import readout
+from sims.kit.readout import figure
+from tests.sims.markup import words, xml
+
+Array = npt.NDArray[np.float64]
+K_LEFT = np.array([[458.654, 0, 367.215], [0, 457.296, 248.375], [0, 0, 1]])
+K_RIGHT = np.array([[457.587, 0, 379.999], [0, 456.134, 255.238], [0, 0, 1]])
+TURN = np.array([0.05, -0.21, 0.11])
+R = cv2.Rodrigues(TURN)[0].astype(np.float64)
+T = np.array([[-0.31], [0.02], [0.04]])
+EXPECTED = [
+    458.654, 457.296, 367.215, 248.375, 457.587, 456.134, 379.999, 255.238, *np.degrees(TURN), -0.31, 0.02, 0.04,
+]  # fmt: skip
+
+
+def opencv(folder: Path, names: tuple[str, str] = ("K1", "K2"), ending: str = "yml") -> str:
+    """What OpenCV itself writes."""
+    path = folder / f"pair.{ending}"
+    storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    for name, matrix in zip((*names, "R", "T"), (K_LEFT, K_RIGHT, R, T), strict=True):
+        storage.write(name, matrix)
+    storage.release()
+    return path.read_text()
+
+
+def kalibr() -> str:
+    rows = "\n".join(f"  - {[*row, shift]}" for row, (shift,) in zip(R.tolist(), T.tolist(), strict=True))
+    return f"""cam0:
+  cam_overlaps: [1]
+  camera_model: pinhole
+  distortion_coeffs: [-0.28, 0.07, 0.0002, 1.8e-05]
+  intrinsics: [458.654, 457.296, 367.215, 248.375]
+  resolution: [752, 480]
+  rostopic: /cam0/image_raw
+cam1:
+  T_cn_cnm1:
+{rows}
+  - [0.0, 0.0, 0.0, 1.0]
+  cam_overlaps: [0]
+  intrinsics: [457.587, 456.134, 379.999, 255.238]
+  rostopic: /cam1/image_raw
+"""
+
+
+def ros(*, right_first: bool = False) -> str:
+    first, second, P_first, P_second, *_ = cv2.stereoRectify(
+        K_LEFT, np.zeros(5), K_RIGHT, np.zeros(5), (752, 480), R, T
+    )
+    texts = [
+        f"""image_width: 752
+camera_name: narrow_stereo/{name}
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: {np.ravel(K).tolist()}
+distortion_model: plumb_bob
+rectification_matrix:
+  rows: 3
+  cols: 3
+  data: {np.ravel(turn).tolist()}
+projection_matrix:
+  rows: 3
+  cols: 4
+  data: {np.ravel(P).tolist()}
+"""
+        for name, K, turn, P in (("left", K_LEFT, first, P_first), ("right", K_RIGHT, second, P_second))
+    ]
+    return "\n".join(reversed(texts) if right_first else texts)
+
+
+def test_a_pair_is_read_as_opencv_writes_it(tmp_path: Path) -> None:
+    for names in (("K1", "K2"), ("M1", "M2"), ("cameraMatrix1", "cameraMatrix2")):
+        np.testing.assert_allclose(read(opencv(tmp_path, names)), EXPECTED, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(read(opencv(tmp_path, ending="json")), EXPECTED, rtol=0, atol=1e-9)
+    pasted = "\n".join(f"{n} = {m.tolist()}" for n, m in (("K1", K_LEFT), ("K2", K_RIGHT), ("R", R), ("T", T)))
+    np.testing.assert_allclose(read(pasted), EXPECTED, rtol=0, atol=1e-9)
+
+
+def test_a_pair_is_read_as_kalibr_and_ros_write_it() -> None:
+    np.testing.assert_allclose(read(kalibr()), EXPECTED, rtol=0, atol=1e-9)
+    for right_first in (False, True):
+        np.testing.assert_allclose(read(ros(right_first=right_first)), EXPECTED, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "No pair was found"), ("K1: [1, 0, 0]", "No pair was found"), ("R: [nan]\n" * 400, "No pair was found"),
+        (EXAMPLE.replace("K2: [457.587, 0,", "K2: [457.587,"), "“K2” should have 9 numbers"),
+        (EXAMPLE.replace("R: [0.999997", "R: [0.8"), "R should be a rotation"),
+        (EXAMPLE.replace("R:", "rotation:"), "“R” should have 9 numbers"),
+        (EXAMPLE.replace("[458.654,", "[-458.654,"), "with fx and fy above 0"),
+        (EXAMPLE.replace("[458.654, 0,", "[458.654, 3,"), "A camera matrix should be"),
+        (EXAMPLE.replace("T: [-0.110074, 0.000399, -0.000853]", "T: [0, 0, 0]"), "T is zero"),
+        (kalibr().replace("456.134, 379.999", "456.134"), "“intrinsics” should have 4 numbers"),
+    ],
+)  # fmt: skip
+def test_what_is_no_pair_is_refused_in_words(text: str, said: str) -> None:
+    with pytest.raises(ValueError, match=said.split(" (")[0]):
+        read(text)
+
+
+def seen(points: Array) -> tuple[Array, Array]:
+    """Both pixels (n, 2) of points before the left camera, as OpenCV projects them."""
+    nothing = np.zeros(3)
+    left = cv2.projectPoints(points, nothing, nothing, K_LEFT, None)[0][:, 0]
+    right = cv2.projectPoints(points, TURN, T, K_RIGHT, None)[0][:, 0]
+    return left.astype(np.float64), right.astype(np.float64)
+
+
+def state(**more: Any) -> EpipolarParams:
+    p = EpipolarParams()
+    return p.changed({**changes(p, read(EXAMPLE)), "own": tuple(EXPECTED), **more})
+
+
+def solved(p: EpipolarParams) -> OwnPair:
+    pair = solve(p).own
+    assert pair is not None
+    return pair
+
+
+def test_matches_of_the_pair_keep_its_constraint_and_lines_are_opencvs() -> None:
+    left, right = seen(np.random.default_rng(5).uniform((-1, -1, 2), (1, 1, 6), (20, 3)))
+    for p_left, p_right in zip(left.tolist(), right.tolist(), strict=True):
+        pair = solved(state(own_left=p_left, own_right=p_right))
+        assert pair.residual == pytest.approx(0.0, abs=1e-9)
+        assert pair.distance == pytest.approx(0.0, abs=1e-6)
+        off = solved(state(own_left=p_left, own_right=(p_right[0], p_right[1] + 5.0)))
+        assert pair.line_right is not None
+        assert abs(off.distance or 0.0) == pytest.approx(5.0 * abs(pair.line_right[1]), abs=1e-6)
+        expected = cv2.computeCorrespondEpilines(np.array([[p_left]]), 1, pair.F)[0, 0]
+        np.testing.assert_allclose(pair.line_right, expected, rtol=1e-4, atol=1e-3)
+
+
+def test_its_epipoles_are_where_each_camera_sees_the_other() -> None:
+    pair = solved(state())
+    center = -R.T @ T[:, 0]
+    assert pair.epipole_left == pytest.approx(tuple((K_LEFT @ center / center[2])[:2]), rel=1e-9)
+    seen_left = K_RIGHT @ T[:, 0]
+    assert pair.epipole_right == pytest.approx(tuple((seen_left / seen_left[2])[:2]), rel=1e-9)
+    assert pair.baseline == pytest.approx(float(np.linalg.norm(T)))
+    assert pair.angle == pytest.approx(float(np.degrees(np.linalg.norm(TURN))))
+
+
+def test_its_numbers_stand_in_their_fold_and_can_be_copied() -> None:
+    p = state(own_left=(300.0, 200.0), own_right=(280.0, 190.0))
+    pair = solved(p)
+    html = readout.render(readout.folded(SIM.readouts(p, solve(p)))["Your own stereo pair"])
+    assert pair.distance is not None
+    assert figure(abs(pair.distance), 2) in words(html)
+    copied = [json.loads(str(e.get("value"))) for e in xml(html).iter("button")]
+    np.testing.assert_array_equal(copied, [pair.F, pair.E])
+    nothing = readout.folded(SIM.readouts(EpipolarParams(), solve(EpipolarParams())))["Your own stereo pair"]
+    assert "Paste a calibration" in words(readout.render(nothing))
+
+
+def test_a_pasted_text_becomes_a_state_and_the_state_a_link() -> None:
+    assert SIM.paste is not None
+    p = EpipolarParams()
+    p = p.changed(SIM.paste.changes(p, SIM.paste.found(kalibr())))
+    assert EpipolarParams.from_query(p.query_items().items()) == p
+    assert p.own is not None
+    np.testing.assert_allclose(p.own, EXPECTED, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("broken", [{0: 0.0}, {5: -1.0}, {11: 0.0, 12: 0.0, 13: 0.0}])
+def test_a_link_without_focal_lengths_or_a_baseline_is_of_no_pair(broken: dict[int, float]) -> None:
+    numbers = [broken.get(k, value) for k, value in enumerate(EXPECTED)]
+    p = EpipolarParams.from_query([("own", ",".join(map(str, numbers)))])
+    assert solve(p).own is None
