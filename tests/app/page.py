@@ -129,7 +129,7 @@ class Page:
         value = float(next(self._counter) % 90)
         self.slide("yaw", value)
         self.until(lambda: self.params["yaw"] == value, "the state to follow the slider")
-        self.until(lambda: f"Rz({value:.0f}°)" in self.column.html("read"), "the read-outs to follow")
+        self.until(lambda: f"Turn about Z by {value:.1f}°" in self.column.html("read"), "the read-outs to follow")
         self.until(lambda: self.model.version == self.column.version, "the scene to follow")
 
     def _hear(self, text: Any) -> None:
