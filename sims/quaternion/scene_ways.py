@@ -30,8 +30,8 @@ class Ways:
         self.ways = {name: Object(stage, name, (k - 1) * BESIDE * FRAME[0]) for k, name in enumerate(NAMES)}
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution) -> None:
-        self.node.show(bool(s.ways))
-        for name, way in s.ways.items():
+        self.node.show(s.ways is not None)
+        for name, way in (s.ways or {}).items():
             self.ways[name].draw(way, p.show_paths, chosen=name == p.interpolation)
 
 

@@ -98,8 +98,8 @@ class QuaternionSolution:
     at_start: bool
     """The object is drawn where the start is."""
     at_target: bool
-    ways: Mapping[Name, Way]
-    """The interpolations beside each other; empty where they aren't shown."""
+    ways: Mapping[Name, Way] | None
+    """The interpolations beside each other, where they are shown."""
     orders: Orders | None
     """A and B in both orders, where they are shown."""
 
@@ -146,7 +146,7 @@ def solve(p: QuaternionParams) -> QuaternionSolution:
         moved=math.dist(p.point, steps.rotated[1:]) > APART,
         at_start=_same(now, start),
         at_target=_same(now, total),
-        ways=_ways(p, start, total) if p.topic == "path" else {},
+        ways=_ways(p, start, total) if p.topic == "path" else None,
         orders=both_orders(p.axis, p.angle, p.axis_b, p.angle_b, start, p.t) if p.topic == "order" else None,
     )
 

@@ -134,8 +134,10 @@ def _notes(p: ChainParams, s: ChainSolution) -> Iterator[Note]:
 def _short(s: ChainSolution, metres: float) -> str:
     gap = quantity(metres, "m")
     if s.pull_outside:
-        least, greatest = (quantity(r, "m", 2) for r in s.reach)
-        return f"Out of reach: this is as near as it gets, {gap} short. The arm reaches from {least} to {greatest}."
+        least, greatest = s.reach
+        far = "as far as one likes" if greatest is None else quantity(greatest, "m", 2)
+        bounds = f"from {quantity(least, 'm', 2)} to {far}"
+        return f"Out of reach: this is as near as it gets, {gap} short. The arm reaches {bounds}."
     return f"Not reached: from here this is as near as it gets, {gap} short. Another posture may come nearer."
 
 

@@ -58,8 +58,8 @@ class ChainSolution:
     near_singular: bool
     lost: Array | None
     """Unit vector along which the end effector can't move in a singular pose, where there is one such direction."""
-    reach: tuple[float, float]
-    """Bounds of the distance from the base, in metres."""
+    reach: tuple[float, float | None]
+    """Bounds of the distance from the base, in metres; None where a joint slides as far as one likes."""
     through: Array
     """The point in homogeneous coordinates, (n + 1, 4): in the end effector's frame, …, in the world."""
     kept: tuple[tuple[float, float], tuple[float, float] | None]
@@ -111,7 +111,7 @@ def solve(p: ChainParams) -> ChainSolution:
         positions=posture.positions,
         swapped_end_effector=None if swapped is None else swapped[0],
         **_freedom(p, chain, posture),
-        reach=(reach.least, reach.greatest),
+        reach=(reach.least, reach.greatest if math.isfinite(reach.greatest) else None),
         through=through,
         kept=_kept(p.point, end_effector, through[-1]),
         target_distance=None if p.target is None else math.dist(end, p.target),

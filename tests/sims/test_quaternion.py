@@ -107,6 +107,7 @@ def test_slerp_is_scipys_and_the_long_way_ends_at_the_opposite_quaternion(p: Qua
 @given(states)
 def test_paths_lead_from_start_to_target_along_the_way_that_the_object_goes(p: QuaternionParams) -> None:
     s = solve(p.changed({"show": "path"}))
+    assert s.ways is not None
     assert list(s.ways) == ["slerp", "nlerp", "euler"]
     for name, way in s.ways.items():
         path, mark = way.nose.path, way.nose.marks[4]
@@ -285,7 +286,7 @@ def test_three_objects_go_side_by_side_from_start_to_target(rig: Rig, p: Quatern
     s = solve(p)
     assert rig.model.visible("/ways") == (p.topic == "path") == bool(s.ways)
     middles = []
-    for name, way in s.ways.items():
+    for name, way in (s.ways or {}).items():
         middle = rig.model.world_pose(f"/ways/{name}")[:3, 3]
         middles.append(middle)
         near(rig.model.world_pose(f"/ways/{name}/object/hull")[:3, :3], rotation(way.q).as_matrix())
@@ -504,6 +505,7 @@ def test_the_comparison_opens_with_a_turn_where_the_ways_differ(rig: Rig) -> Non
     assert isinstance(p, QuaternionParams)
     assert (p.topic, p.t) == ("path", 0.25)
     ways = solve(p).ways
+    assert ways is not None
     turned = [way.turned for way in ways.values()]
     assert turned[0] - turned[1] > 5.0, "SLERP is ahead of NLERP"
     assert math.degrees(math.acos(ways["slerp"].at @ ways["euler"].at)) > 10.0

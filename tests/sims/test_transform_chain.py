@@ -652,6 +652,7 @@ def test_held_end_effector_comes_near_within_half_turns(p: ChainParams, place: t
         np.testing.assert_allclose(s.end, aim, rtol=0, atol=1e-7)
     elif s.pull_outside:
         least, greatest = s.reach
+        assert greatest is not None
         assert not least <= math.hypot(*aim) <= greatest
 
 
@@ -714,6 +715,7 @@ def test_new_targets_can_be_reached_and_differ(p: ChainParams) -> None:
         assert p.target not in seen
         seen.add(p.target)
         least, greatest = solve(p).reach
+        assert greatest is not None
         assert least - 0.002 <= math.hypot(*p.target) <= greatest + 0.002
     assert p.changed(actions.new_target(p)) == p.changed(actions.new_target(p))
 
