@@ -168,7 +168,7 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     mouse.move(track["x"] + track["width"] / 2, track["y"] + 12)
     mouse.down()
     mouse.move(track["x"] + track["width"] / 2 + (track["width"] - THUMB) / 4, track["y"] + 12, steps=3)
-    learner.until(lambda: "Two rings now" in (learner.frame.locator(".s3-caption").text_content() or ""))
+    learner.until(lambda: "One lamp is out" in (learner.frame.locator(".s3-caption").text_content() or ""))
     held(learner, pitch=90)
     assert box(slider)["y"] == pytest.approx(track["y"], abs=1)
     mouse.up()
