@@ -92,7 +92,7 @@ def wait_live(page: Page) -> None:
     """Wait until every sim on the page, itself or in a frame, is drawn."""
     for frame in page.frames:
         if frame.url.split("?")[0].endswith("/embed"):
-            frame.wait_for_function("window.sim3?.live === true")
+            frame.wait_for_function("!window.sim3 || sim3.live === true")  # a refused link has a page without a sim
             frame.wait_for_selector(".s3-still", state="detached")
     settled(page)
 
