@@ -457,3 +457,43 @@ def test_a_file_that_is_given_up_while_it_is_read_changes_nothing(local: Local) 
     assert desk.params.dataset == "room"
     wait_for(lambda: set(clouds._uploads) == before, "the file to be forgotten")
     assert not desk.session.uploads
+
+
+# ---- a text of one's own
+
+
+def pasted(desk: Desk, text: bytes) -> httpx.Response:
+    return desk.local.http.post(f"{desk.path}paste", content=text)
+
+
+def test_a_text_becomes_the_state_of_its_room_alone(local: Local) -> None:
+    mine, other = (Desk(local, slug="euler-angles") for _ in range(2))
+    answer = pasted(mine, "\ufeffwxyz 0.5 0.5 -0.5 0.5".encode())
+    assert answer.status_code == 200
+    assert answer.headers["access-control-allow-origin"] == "*"
+    assert mine.params.yaw != other.params.yaw == type(other.params)().yaw
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (b"no rotation at all", "Nothing has changed."),
+        (b"\xff\xfe\x00", "isn’t text in UTF-8"),
+        (b"1 2 3 4 5 6 7 8 9", "Nothing has changed."),
+    ],
+)
+def test_a_text_that_says_nothing_is_refused_in_words_and_changes_nothing(
+    local: Local, text: bytes, words: str
+) -> None:
+    desk = Desk(local, "yaw=12", slug="euler-angles")
+    answer = pasted(desk, text)
+    assert answer.status_code == 422
+    assert words in answer.json()["detail"]
+    assert desk.params.yaw == 12.0
+
+
+def test_a_text_needs_its_rooms_key_a_sim_that_takes_it_and_a_sensible_length(local: Local) -> None:
+    desk = Desk(local, slug="euler-angles")
+    assert local.http.post(f"{desk.path.replace(desk.key, new_key())}paste", content=b"1").status_code == 404
+    assert pasted(Desk(local, slug="gimbal-lock"), b"1 0 0 0").status_code == 404
+    assert pasted(desk, b"1 " * 40_000).status_code == 413
