@@ -113,15 +113,27 @@ def thumbnail(browser: Browser, address: str, sim: Sim[Any, Any], theme: Literal
     bare = f"{address}/sims/{sim.slug}/embed?controls=0&theme={theme}"
     with opened(browser, bare, THUMB, theme, THUMB_SCALE) as page:
         wait_live(page)
-        width, height = (2 * wanted - got for wanted, got in zip(THUMB, canvas(page)[2:], strict=True))
-        page.set_viewport_size({"width": round(width), "height": round(height)})
+        fit(page, THUMB)
         page.add_style_tag(content=".s3-looks { display: none !important }")
         settled(page)
-        x, y, width, height = canvas(page)
-        picture = page.screenshot(clip={"x": x, "y": y, "width": width, "height": height})
+        x, y, *_ = canvas(page)
+        picture = page.screenshot(clip={"x": x, "y": y, "width": THUMB[0], "height": THUMB[1]})
     path = THUMBS / f"{sim.slug}-{theme}.webp"
     path.write_bytes(as_webp(picture))
     print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1000:.0f} kB")
+
+
+def fit(page: Page, scene: tuple[int, int]) -> None:
+    """Make the window so large that the scene has a size, to a pixel; what is beside it may grow with the window."""
+    width, height = scene
+    for _ in range(20):
+        more, taller = (wanted - got for wanted, got in zip(scene, canvas(page)[2:], strict=True))
+        if abs(more) < 1.0 and abs(taller) < 1.0:
+            return
+        width, height = round(width + more), round(height + taller)
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(200)
+    raise AssertionError(f"the scene can't be made {scene}")
 
 
 def canvas(page: Page) -> tuple[float, float, float, float]:
