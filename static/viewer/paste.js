@@ -41,7 +41,7 @@ export class Paste {
     const line = this.place.querySelector(".s3-wrong");
     line.textContent = wrong;
     line.hidden = !wrong;
-    this.text.toggleAttribute("aria-invalid", Boolean(wrong));
+    this.text.setAttribute("aria-invalid", String(Boolean(wrong)));
     if (wrong && !this.place.checkVisibility()) this.words.notify(`⚠ ${wrong}`);
   }
 }
