@@ -44,6 +44,7 @@ async def refused(_: Request, refusal: Exception) -> Response:
 
 
 @router.options("/sims/{slug}/s/{room}/{key}/file")
+@router.options("/sims/{slug}/s/{room}/{key}/paste")
 async def may(slug: str, room: str, key: str) -> Response:
     return Response(status_code=204, headers=ANYWHERE)
 
@@ -63,11 +64,6 @@ async def upload(request: Request, given: Given, slug: str, room: str, key: str,
         else:
             session.upload(known_as, len(data), changes)
     return JSONResponse({"name": name}, headers=ANYWHERE)
-
-
-@router.options("/sims/{slug}/s/{room}/{key}/paste")
-async def may_paste(slug: str, room: str, key: str) -> Response:
-    return Response(status_code=204, headers=ANYWHERE)
 
 
 @router.post("/sims/{slug}/s/{room}/{key}/paste")

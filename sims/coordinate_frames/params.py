@@ -105,9 +105,7 @@ class FramesParams(Params):
     def _same_places(self, state: Self, changes: Mapping[str, Any]) -> Self:
         """The state at rest, with what has a place where it was in the world: all that the changes don't name."""
         update: dict[str, Any] = {
-            name: None
-            for name in ("turn", "turn_to", "lit")
-            if name not in changes and getattr(state, name) is not None
+            name: None for name in PASSING if name not in changes and getattr(state, name) is not None
         }
         if state.axes is not self.axes:
             for name in {"point", "origin"} - changes.keys():

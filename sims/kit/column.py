@@ -46,13 +46,12 @@ class Column:
         """What a state shows. Without a solution yet: the controls alone."""
         offers = self.sim.offers(params, solution, *self._library)
         parts, values = dict(self._controls_of(offers)), controls.values(offers)
-        parts[ARRANGED] = " ".join(self._names("", params))
         if solution is not None:
-            places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
-            parts |= self._rest(params, solution, places)
+            places, dials = self._found(params, solution)
+            parts |= self._rest(params, solution, places, dials)
             for handle, place in places.items():
                 values |= {f"{handle}.{k}": value for k, value in enumerate(_clean(place))}
-            values |= {dial.handle: dial.value(params, solution) for dial in self.sim.dials}
+            values |= dials
         return Shown(parts, values)
 
     def html(self, params: Params, solution: Any, only: Collection[str] | None = None) -> str:
@@ -60,8 +59,7 @@ class Column:
         offers = self.sim.offers(params, solution, *self._library)
         parts = self._inputs(offers, filled=True)
         if solution is not None:
-            places = {typed.handle: typed.place(params, solution) for typed in self.sim.typed}
-            parts |= self._rest(params, solution, places)
+            parts |= self._rest(params, solution, *self._found(params, solution))
         return "".join(self._page(parts, params, only))
 
     def _controls_of(self, offers: Offers[Any]) -> Parts:
@@ -69,7 +67,8 @@ class Column:
         form = offers.form()
         if form != self._form:
             self._form = form
-            self._controls = self._inputs(offers, filled=False)
+            arranged = " ".join(self._names("", offers.params))
+            self._controls = {**self._inputs(offers, filled=False), ARRANGED: arranged}
         return self._controls
 
     def _inputs(self, offers: Offers[Any], *, filled: bool) -> Parts:
@@ -83,8 +82,17 @@ class Column:
             for name, html in found.items()
         }
 
-    def _rest(self, params: Params, solution: Any, places: Mapping[str, Place | None]) -> Parts:
-        """What follows from the solution; `places` are those of the nodes that can be typed."""
+    def _found(self, params: Params, solution: Any) -> tuple[dict[str, Place | None], dict[str, float | None]]:
+        """Places of the nodes that can be typed, and what the dials show, by their handles."""
+        return (
+            {typed.handle: typed.place(params, solution) for typed in self.sim.typed},
+            {dial.handle: dial.value(params, solution) for dial in self.sim.dials},
+        )
+
+    def _rest(
+        self, params: Params, solution: Any, places: Mapping[str, Place | None], dials: Mapping[str, float | None]
+    ) -> Parts:
+        """What follows from the solution, and from what was `_found` in it."""
         sim = self.sim
         found = {"caption": escape(sim.caption(params, solution))}
         read = readout.folded(sim.readouts(params, solution))
@@ -93,7 +101,7 @@ class Column:
         for typed in sim.typed:
             found[f"control:{typed.handle}"] = "" if places[typed.handle] is None else placed(typed)
         for dial in sim.dials:
-            found[f"control:{dial.handle}"] = "" if dial.value(params, solution) is None else dialled(dial)
+            found[f"control:{dial.handle}"] = "" if dials[dial.handle] is None else dialled(dial)
         if sim.files is not None:
             preview = sim.files.preview(params, *self._library)
             found["preview"] = "" if preview is None else readout.render([preview])

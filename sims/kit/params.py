@@ -67,7 +67,7 @@ class Params(BaseModel):
 
     @property
     def arranged(self) -> tuple[str, ...]:
-        """Those that have a control, in the order in which the controls stand in this state."""
+        """Those that have a control, in the order in which the controls stand in this state, as its `form` says."""
         return self.visible
 
     def entry_label(self, name: str, k: int) -> str:

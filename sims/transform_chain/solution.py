@@ -124,9 +124,7 @@ def solve(p: ChainParams) -> ChainSolution:
         tool="z" if p.rows and not chain.lengths[-1] and p.axes[-1] == "z" else "x",
         spans=tuple(span(positions[0], position) for position in positions[1:]),
         holds=_holds(chain, moves, posture, joints, HOLD * size),
-        circle=None
-        if p.trace is None or p.kind(p.trace - 1) != "r"
-        else circle(p.axes[p.trace - 1], p.trace - 1, posture),
+        circle=_trace(p, posture),
         swapped=None if swapped is None else swapped[1],
         size=size,
     )
