@@ -10,6 +10,7 @@ import sys
 import threading
 
 import uvicorn
+from fastapi import FastAPI
 
 from app.settings import Settings, load
 from app.sockets.protocol import LARGEST, Websocket
@@ -30,7 +31,8 @@ def main() -> None:
 
         asyncio.set_event_loop_policy(uvloop.EventLoopPolicy())
     host = ViserHost()
-    server = uvicorn.Server(config(settings, host))
+    app = create_app(settings, host)
+    server = uvicorn.Server(config(settings, app))
     finished = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: setattr(server, "should_exit", True))
@@ -43,6 +45,7 @@ def main() -> None:
 
     serving = asyncio.run_coroutine_threadsafe(serve(), host.loop)
     threading.Thread(target=announce, args=(server, settings), daemon=True).start()
+    threading.Thread(target=app.state.services.lessons.load_all, daemon=True).start()
     while not finished.wait(0.2):
         pass
     with contextlib.suppress(SystemExit):
@@ -52,10 +55,10 @@ def main() -> None:
         raise SystemExit(f"Sim3 can't listen on {settings.host}:{settings.port}; is the port taken? Set SIM3_PORT.")
 
 
-def config(settings: Settings, host: ViserHost) -> uvicorn.Config:
+def config(settings: Settings, app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
     return uvicorn.Config(
-        create_app(settings, host), host=settings.host, port=settings.port, ws=Websocket,
+        app, host=settings.host, port=settings.port, ws=Websocket,
         ws_max_size=LARGEST, ws_per_message_deflate=False, log_level="warning", access_log=False,
         timeout_graceful_shutdown=2, proxy_headers=False, lifespan="on",
     )  # fmt: skip

@@ -23,6 +23,7 @@ class Settings(BaseSettings):
     root_path: str = Field("", description="path prefix behind a proxy, as in /sim3")
     frame_ancestors: str = Field("*", description="sites that may embed the sims beside our own pages, as in CSP")
     cloud_dir: Path | None = Field(None, description="folder whose files sims that take files offer to everybody")
+    lesson_dir: Path | None = Field(None, description="folder whose lessons (.md) stand on the launcher's second shelf")
     max_upload: int = Field(100, ge=1, le=2000, description="megabytes that a file of a learner may have")
     max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
     origins: str = Field("", description="further origins, separated by spaces, whose pages may open a websocket")
@@ -39,7 +40,7 @@ class Settings(BaseSettings):
             raise ValueError("must start with a slash, as in /sim3")
         return value
 
-    @field_validator("cloud_dir")
+    @field_validator("cloud_dir", "lesson_dir")
     @classmethod
     def _folder(cls, value: Path | None) -> Path | None:
         if value is not None and not value.is_dir():

@@ -12,9 +12,10 @@ from starlette.exceptions import HTTPException
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.routing import Route, WebSocketRoute
 
+from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
 from app.rooms.registry import Sessions
-from app.routes import api, files, links, pages, rendering, sockets, text
+from app.routes import api, files, lessons, links, pages, rendering, sockets, text
 from app.routes.answers import Answers, Busy, Gone
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
@@ -25,7 +26,7 @@ from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, text.router, api.router, sockets.router, files.router)
+ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router)
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
@@ -64,7 +65,8 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     libraries = {sim.slug: sim.files.library(settings.cloud_dir, largest) for sim in SIMS if sim.files is not None}
     sessions = Sessions(settings.max_sessions, libraries)
     bridge = Bridge(host, sessions, settings.origins)
-    return Services(sessions, bridge, Answers(), Coming(files.AT_ONCE * largest), largest)
+    shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
+    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest)
 
 
 async def _bad_params(request: Request, error: Exception) -> Response:

@@ -23,6 +23,7 @@ from app.rooms.motion import Motion, gliding
 from app.rooms.solver import Solver
 from app.rooms.telling import Listener, Message, Telling
 from app.trouble import Unknown, error_message
+from sims.kit.challenge import checked
 from sims.kit.entered import entered, number, row
 from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
@@ -52,6 +53,8 @@ class Session:
         self.uploads: dict[str, int] = {}
         """Bytes of files that people uploaded, by what the library knows them as; they stay while they are shown."""
         self._solver = solver
+        self._told: tuple[tuple[Params, Any], ...] = ()
+        """The last two states that were told, with their solutions."""
         self.telling = Telling(self.state)
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
         self.drawing = Drawing(
@@ -308,10 +311,21 @@ class Session:
         words = self.drawing.words
         if not words and self.solution is not None:
             words = self.sim.describe(self.drawing.solved, self.solution)
-        return {
+        message = {
             "type": "state", "version": self.version, "params": params.model_dump(mode="json"),
             "query": params.query(), "text": words,
         }  # fmt: skip
+        if self.sim.challenges and self.solution is not None:
+            message["challenges"] = self._checked()
+        return message
+
+    def _checked(self) -> dict[str, Any]:
+        """How near the state that is solved is to each challenge, coming from the one that was told before."""
+        params, solution = self.drawing.solved, self.solution
+        if not self._told or self._told[-1][0] != params:
+            self._told = (*self._told[-1:], (params, solution))
+        before = self._told[0] if len(self._told) > 1 else None
+        return checked(self.sim.challenges, params, solution, before)
 
     # ---- its tasks
 

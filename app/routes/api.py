@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, get_type_hints
 
 import msgspec
@@ -15,11 +15,12 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.routes.answers import RETRY, Busy, found_for
 from app.routes.rendering import sim_or_404
-from app.routes.services import Given
+from app.routes.services import Given, Services
 from app.trouble import question
 from app.values import complaints, shown, strict
 from geometry import GeometryError
 from sims import SIMS
+from sims.kit.challenge import checked
 from sims.kit.params import Params
 from sims.kit.schema import solution_schema
 from sims.kit.sim import Sim, jsonable
@@ -137,10 +138,15 @@ async def catalogue() -> list[dict[str, Any]]:
 
 @router.head("/api/sims/{slug}", include_in_schema=False)
 @router.get("/api/sims/{slug}", tags=["catalogue"])
-async def one(slug: str) -> dict[str, Any]:
-    """One sim, with its objectives and the JSON schemas of its parameters and its solution."""
+async def one(slug: str, given: Given) -> dict[str, Any]:
+    """One sim, with its objectives, challenges, the steps of its lesson, and the schemas of parameters and solution."""
     sim = sim_or_404(slug)
-    return {**_details(sim), "solution": solution_schema(solved(sim))}
+    lesson = given.lessons.of_sim(sim)
+    steps = [] if lesson is None else lesson.steps
+    return {
+        **_details(sim), "solution": solution_schema(solved(sim)),
+        "steps": [{"id": step.id, "title": step.title, "query": step.state.query} for step in steps],
+    }  # fmt: skip
 
 
 def _card(sim: AnySim) -> dict[str, Any]:
@@ -152,6 +158,7 @@ def _details(sim: AnySim) -> dict[str, Any]:
         **_card(sim),
         "objectives": [{"text": o.text, "level": o.level} for o in sim.objectives],
         "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
+        "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
         "parameters": sim.params.model_json_schema(),
     }
 
@@ -185,21 +192,29 @@ def solved(sim: AnySim) -> type:
     return kind
 
 
+async def _answered(
+    request: Request, given: Services, sim: AnySim, say: Callable[[Params, Any], Mapping[str, Any]]
+) -> Response:
+    """The answer that a solved body leads to. Raises `BadBody`."""
+    params = read(request, await request.body(), sim.params)
+
+    def answer() -> bytes:
+        return msgspec.json.encode(say(params, sim.solve(params, *given.sessions.given(sim))))
+
+    try:
+        found = await found_for(request, given.answers, answer) if sim.heavy else answer()
+    except GeometryError as error:
+        known = error.argument if error.argument in sim.params.model_fields else ""
+        item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
+        raise BadBody(item) from None
+    return Response(found, media_type="application/json")
+
+
 def _add_solve(sim: AnySim) -> None:
     async def solve(request: Request, given: Given) -> Response:
-        params = read(request, await request.body(), sim.params)
-
-        def answer() -> bytes:
-            solution = jsonable(sim.solve(params, *given.sessions.given(sim)))
-            return msgspec.json.encode({"params": params.model_dump(mode="json"), "solution": solution})
-
-        try:
-            found = await found_for(request, given.answers, answer) if sim.heavy else answer()
-        except GeometryError as error:
-            known = error.argument if error.argument in sim.params.model_fields else ""
-            item = _item("geometry", (), str(error), None, known, shown(error.received), error.allowed)
-            raise BadBody(item) from None
-        return Response(found, media_type="application/json")
+        return await _answered(request, given, sim, lambda params, solution: {
+            "params": params.model_dump(mode="json"), "solution": jsonable(solution),
+        })  # fmt: skip
 
     solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
     solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
@@ -233,6 +248,15 @@ def _response(words: str, schema: Mapping[str, Any] | None = None) -> dict[str, 
 
 for _sim in SIMS:
     _add_solve(_sim)
+
+
+@router.post("/api/sims/{slug}/check", tags=["solve"], response_class=Response)
+async def check(request: Request, given: Given, slug: str) -> Response:
+    """Say how near some parameters are to each challenge of a sim; what is left out is at its default."""
+    sim = sim_or_404(slug)
+    return await _answered(
+        request, given, sim, lambda params, solution: {"challenges": checked(sim.challenges, params, solution)}
+    )
 
 
 @router.post("/api/sims/{slug}/solve", include_in_schema=False)

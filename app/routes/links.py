@@ -14,7 +14,7 @@ from sims.kit.sim import Sim
 from sims.kit.spelling import clipped, meant, number_text
 
 Items = Sequence[tuple[str, str]]
-OPTIONS = ("view", "controls", "theme", "only")
+OPTIONS = ("view", "controls", "theme", "only", "challenge", "lesson")
 """What every query may hold besides the sim's parameters."""
 TRACKING = re.compile(
     r"(utm|mtm|pk|hsa|matomo|piwik)_\w+|_ga|_gl|_hsenc|_hsmi|_openstat|dclid|fbclid|gad_(source|campaignid)|gbraid|gclid"
@@ -77,10 +77,13 @@ def _wrong(sim: Sim[Any, Any], options: Items) -> list[Complaint]:
         elif name == "only" and (strange := [each for each in text.split(",") if each not in (known := controls(sim))]):
             allowed = "some of these, with commas between: " + ", ".join(known)
             complaints.append(Complaint(name, clipped(text), allowed, meant(strange[0], known)))
+        elif name == "challenge" and text not in (known := [each.id for each in sim.challenges]):
+            allowed = "one of: " + ", ".join(known) if known else "nothing: this sim has no challenges"
+            complaints.append(Complaint(name, clipped(text), allowed, meant(text, known)))
     return complaints
 
 
-WORDS = {"theme": ("light", "dark"), "controls": ("1", "0")}
+WORDS = {"theme": ("light", "dark"), "controls": ("1", "0"), "lesson": ("1", "0")}
 
 
 def controls(sim: Sim[Any, Any]) -> list[str]:

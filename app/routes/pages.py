@@ -1,4 +1,4 @@
-"""The pages: launcher, lesson pages, the page of a room, and what these load."""
+"""The pages: those of rooms, what they load, and what is no lesson."""
 
 from __future__ import annotations
 
@@ -47,11 +47,6 @@ def page(path: str, on: APIRouter = router) -> Callable[[Any], Any]:
     return on.api_route(path, methods=["GET", "HEAD"], response_class=HTMLResponse)
 
 
-@page("/")
-async def launcher(request: Request) -> Response:
-    return rendering.render(request, "launcher.html")
-
-
 @page("/sims")
 @page("/sims/")
 async def sims(request: Request) -> Response:
@@ -61,14 +56,6 @@ async def sims(request: Request) -> Response:
 @page("/docs")
 async def docs(request: Request) -> Response:
     return rendering.render(request, "docs.html", described=described())
-
-
-@page("/sims/{slug}")
-async def lesson(request: Request, slug: str) -> Response:
-    sim = sim_or_404(slug)
-    given = request.query_params.multi_items()
-    links.read(sim, given)
-    return rendering.render(request, "sim.html", sim=sim, query=links.own(given))
 
 
 @page("/sims/{slug}/embed")
@@ -114,7 +101,9 @@ def _page(
     only = options["only"].split(",") if "only" in options else None
     solution = session.solution if session is not None and session.drawing.solved == params else None
     column = Column(sim, given.sessions.given(sim)).html(params, solution, only)
-    return rendering.viewer(request, sim, column, sim.home(params, solution), options, given.largest, room, key)
+    view, lesson = sim.home(params, solution), given.lessons.of_sim(sim)
+    steps = [] if lesson is None else lesson.data()
+    return rendering.viewer(request, sim, column, view, options, given.largest, steps, room, key)
 
 
 def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
@@ -146,7 +135,17 @@ async def client(request: Request, fingerprint: str, name: str) -> Response:
 
 @page("/viewer/{fingerprint}/{name}")
 async def script(request: Request, fingerprint: str, name: str) -> Response:
-    return _file(request, rendering.modules(), name, known=fingerprint == rendering.modules_fingerprint())
+    return _module(request, "viewer", fingerprint, name)
+
+
+@page("/lesson/{fingerprint}/{name}")
+async def lesson_script(request: Request, fingerprint: str, name: str) -> Response:
+    return _module(request, "lesson", fingerprint, name)
+
+
+def _module(request: Request, folder: str, fingerprint: str, name: str) -> Response:
+    known = fingerprint == rendering.modules_fingerprint(folder)
+    return _file(request, rendering.modules(folder), name, known=known)
 
 
 def _file(request: Request, files: Mapping[str, bytes], name: str, *, known: bool) -> Response:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fastapi import HTTPException, Request
@@ -42,20 +43,20 @@ def static(request: Request, name: str) -> str:
 
 
 @functools.cache
-def modules() -> dict[str, bytes]:
-    """The scripts of a sim's page by their names: those that begin, and the modules that import each other."""
-    return {path.name: path.read_bytes() for path in sorted((ROOT / "static" / "viewer").glob("*.js"))}
+def modules(folder: str = "viewer") -> dict[str, bytes]:
+    """The scripts of a page by their names, of a sim's or a lesson's: those that begin, and what these import."""
+    return {path.name: path.read_bytes() for path in sorted((ROOT / "static" / folder).glob("*.js"))}
 
 
 @functools.cache
-def modules_fingerprint() -> str:
+def modules_fingerprint(folder: str = "viewer") -> str:
     """Changes when any of them does; it stands in their addresses, so that what they import is as new as they are."""
-    return hashlib.sha256(b"".join(modules().values())).hexdigest()[:10]
+    return hashlib.sha256(b"".join(modules(folder).values())).hexdigest()[:10]
 
 
-def module(request: Request, name: str) -> str:
-    """Address of a script of a sim's page."""
-    return f"{base(request)}/viewer/{modules_fingerprint()}/{name}"
+def module(request: Request, name: str, folder: str = "viewer") -> str:
+    """Address of such a script."""
+    return f"{base(request)}/{folder}/{modules_fingerprint(folder)}/{name}"
 
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
@@ -71,8 +72,8 @@ def render(request: Request, template: str, status: int = 200, **context: Any) -
 
 
 def viewer(
-    request: Request, sim: AnySim, column: str, view: View, options: dict[str, str], largest: int, room: str,
-    key: str = "",
+    request: Request, sim: AnySim, column: str, view: View, options: dict[str, str], largest: int,
+    steps: Sequence[Mapping[str, Any]], room: str, key: str = "",
 ) -> Response:  # fmt: skip
     """The page of a session in a state: viser's scene beside a column of ours. Without its key it only watches.
 
@@ -86,6 +87,8 @@ def viewer(
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
         "files": None if sim.files is None else {"largest": largest},
+        "steps": steps if options.get("lesson") == "1" else [],
+        "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
         "paste": None if sim.paste is None else {"longest": LONGEST},
         "label": {"ink": DARK.ink, "plate": DARK.page},
         "main": module(request, "main.js"), "client": f"{client}/loader.js",

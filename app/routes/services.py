@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from app.lessons.shelf import Shelf
 from app.rooms.registry import Sessions
 from app.routes.answers import Answers
 from app.routes.coming import Coming
@@ -20,6 +21,7 @@ class Services:
 
     sessions: Sessions
     bridge: Bridge
+    lessons: Shelf
     answers: Answers
     coming: Coming
     largest: int

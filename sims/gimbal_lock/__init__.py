@@ -7,6 +7,7 @@ which holds an aircraft, about the middle ring's x. What they can do together de
 from __future__ import annotations
 
 from sims.gimbal_lock import actions
+from sims.gimbal_lock.challenges import CHALLENGES
 from sims.gimbal_lock.panes import panes
 from sims.gimbal_lock.params import LOCK, GimbalParams
 from sims.gimbal_lock.readouts import ROTATION, caption, describe, readouts
@@ -51,6 +52,7 @@ SIM = Sim(
         ),
     ),
     handles=actions.HANDLES,
+    challenges=CHALLENGES,
     states={
         "turned": {"yaw": 30, "pitch": 35, "roll": -25},
         "lock up": {"pitch": 90},

@@ -11,6 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from sims.kit.challenge import Challenge
 from sims.kit.offers import Offers
 from sims.kit.pane import Pane
 from sims.kit.params import Params
@@ -213,6 +214,7 @@ class Sim(Generic[P, S]):
     typed: Sequence[Typed[P, S]] = ()
     dials: Sequence[Dial[P, S]] = ()
     """They stand before the other controls."""
+    challenges: Sequence[Challenge[P, S]] = ()
     states: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     files: Files | None = None
     paste: Paste[P] | None = None

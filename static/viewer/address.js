@@ -2,7 +2,7 @@
 // that Reset leads back to.
 import { Query, sim } from "./page.js";
 
-const OPTIONS = ["view", "controls", "theme", "only"];
+const OPTIONS = ["view", "controls", "theme", "only", "challenge", "lesson"];
 
 export class Address {
   constructor() {

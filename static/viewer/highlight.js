@@ -46,6 +46,21 @@ export class Highlight {
     if (name) this.hover(column.querySelector(`[data-control="${CSS.escape(name.replace(/\.\d+$/, ""))}"]`));
   }
 
+  // What the page around the sim points at.
+  point(name) {
+    this.mine = name;
+    this.show();
+    this.channel.send({ type: "point", name });
+  }
+
+  // A control that is moved from outside, while it moves.
+  briefly(control, seconds) {
+    const node = column.querySelector(`[data-control="${CSS.escape(control)}"]`);
+    if (!node) return;
+    this.hover(node);
+    setTimeout(() => this.mine === node.dataset.link?.split(" ")[0] && this.hover(null), seconds * 1000 + 800);
+  }
+
   letGo() {
     if (this.grips) this.hover(null);
     this.grips = false;

@@ -2,10 +2,13 @@
 import { embedded, sim } from "./page.js";
 
 export class Host {
-  constructor(channel, address) {
+  constructor(channel, address, highlight) {
     this.channel = channel;
+    this.highlight = highlight;
     this.address = address;
     this.afterState = []; // what waits for the next state
+    this.params = {};
+    this.told = new Map(); // what was last said of each challenge
   }
 
   post(message) {
@@ -16,9 +19,25 @@ export class Host {
     if (embedded) window.parent.postMessage(message, "*");
   }
 
-  state({ params, query, solution }) {
+  state({ params, query, solution, challenges }) {
+    this.params = params;
     this.post({ type: "sim3:state", params, query, ...(solution === undefined ? {} : { solution }) });
+    this.near(challenges ?? {});
     this.afterState.splice(0).forEach((then) => then());
+  }
+
+  // Of each challenge how near the state is, when that has changed.
+  near(challenges) {
+    for (const [id, found] of Object.entries(challenges)) {
+      const words = JSON.stringify(found);
+      if (this.told.get(id) !== words) this.post({ type: "sim3:challenge", id, ...found });
+      this.told.set(id, words);
+    }
+  }
+
+  get(solution) {
+    this.told.clear(); // who asks may have heard of nothing yet
+    this.channel.send({ type: "get", ...(solution ? { solution: true } : {}) });
   }
 
   listen(view, height) {
@@ -27,7 +46,8 @@ export class Host {
       const { type, name, solution } = data;
       if (type === "sim3:set") this.set(data, view);
       else if (type === "sim3:action") this.channel.send({ type: "action", name });
-      else if (type === "sim3:get") this.channel.send({ type: "get", ...(solution ? { solution: true } : {}) });
+      else if (type === "sim3:get") this.get(solution);
+      else if (type === "sim3:point") this.highlight.point(String(name ?? ""));
       else height.hear(data);
     });
   }
@@ -36,6 +56,7 @@ export class Host {
     const page = theme !== undefined || controls !== undefined || wanted !== undefined;
     if (params !== undefined || !page) {
       this.channel.send({ type: "set", params, ...(seconds === undefined ? {} : { seconds }) });
+      if (seconds > 0) this.highlight.briefly(differing(this.params, params), seconds);
     }
     if (!page) return;
     if (isView(wanted)) view.go(wanted);
@@ -65,6 +86,10 @@ export class Host {
     const errors = [{ parameter, received: JSON.stringify(received) ?? "nothing", allowed }];
     this.post({ type: "sim3:error", message: `${parameter}: got ${errors[0].received}, allowed: ${allowed}`, errors });
   }
+}
+
+function differing(now, wanted) {
+  return Object.keys(wanted ?? {}).find((name) => JSON.stringify(now[name]) !== JSON.stringify(wanted[name])) ?? "";
 }
 
 function isView(view) {

@@ -11,6 +11,7 @@ import { Pace } from "./pace.js";
 import { sim } from "./page.js";
 import { Parts } from "./parts.js";
 import { Paste } from "./paste.js";
+import { Strip } from "./strip.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
 import { View } from "./view.js";
@@ -35,11 +36,12 @@ class Page {
     this.handles = new Handles(this.pace, this.highlight);
     this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.goOn());
     this.files = new Files(this.words);
-    this.host = new Host(this.channel, this.address);
+    this.host = new Host(this.channel, this.address, this.highlight);
     this.height = new Height(this.host);
     this.view = new View(this.channel, this.address, () => this.height.tellSoon());
     this.paste = new Paste(this.words);
     this.toolbar = new Toolbar(this.address, this.words, this.files, this.view, this.paste);
+    this.strip = new Strip(this.channel, this.view, this.address);
     this.state = null;
     this.sceneless = false;
     this.does = {
@@ -80,14 +82,19 @@ class Page {
   takeState(message) {
     this.trouble.found();
     this.state = message;
-    this.address.query = message.query;
-    this.address.show();
+    // What is asked for with its solution comes more often than an address may change; what comes by itself follows.
+    if (message.solution === undefined) {
+      this.address.query = message.query;
+      this.address.show();
+    }
+    this.strip.show(message);
     this.words.speak(message.text, this.view.words);
     this.host.state(message);
   }
 
   takeParts(message) {
     this.parts.show(message);
+    this.host.post({ type: "sim3:drawn" });
     this.height.tellSoon();
   }
 

@@ -17,6 +17,7 @@ from app.__main__ import config
 from app.rooms import telling
 from app.routes.services import Services
 from app.settings import Settings
+from app.web import create_app
 from sims.kit.viser_internals import ViserHost
 from tests.server import PATIENCE, wait_for
 
@@ -28,7 +29,8 @@ class Local:
         self.problems: list[str] = []
         self._host = ViserHost()
         self._log = _Recorder(self.problems)
-        made = config(Settings(port=0, **settings), self._host)
+        given = Settings(port=0, **settings)
+        made = config(given, create_app(given, self._host))
         self.app: Any = made.app
         for name in ("sim3", "asyncio", "uvicorn.error"):
             logging.getLogger(name).addHandler(self._log)

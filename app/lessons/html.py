@@ -1,0 +1,251 @@
+"""Writes a lesson's HTML, and finds what is wrong with it on the way."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator, Sequence
+from html import escape
+from typing import NamedTuple, cast
+from urllib.parse import unquote
+
+from markdown_it import MarkdownIt
+from markdown_it.renderer import RendererHTML
+from markdown_it.token import Token
+
+from app.lessons import boxes, formula
+from app.lessons.boxes import Hand, Wrong
+from app.lessons.concepts import CONCEPTS
+from app.lessons.dialect import LIVE, line, words
+from app.lessons.errors import Mistake
+from app.lessons.state import AnySim, State, read, setting, shown
+from sims.kit.sim import Library
+
+SENTENCE = re.compile(r".+?[.!?:](?=\s|$)")
+OUTSIDE = ("https://", "http://", "mailto:")
+
+
+class Step(NamedTuple):
+    """A place in the text with a state of the sim."""
+
+    id: str
+    title: str
+    state: State
+    words: str
+    """Its first sentence, as plain text."""
+
+
+class Section(NamedTuple):
+    """What stands below one heading (none for what comes before the first), as HTML."""
+
+    id: str
+    title: str
+    html: str
+    step: Step | None = None
+
+
+class Writer:
+    """Makes the sections of one lesson; what is wrong is added to `mistakes`."""
+
+    def __init__(self, md: MarkdownIt, sim: AnySim, library: tuple[Library, ...], mistakes: list[Mistake]) -> None:
+        self._md = md
+        self._renderer = cast(RendererHTML, md.renderer)
+        self._sim = sim
+        self._library = library
+        self._mistakes = mistakes
+        self._state = read(sim, "", library)
+        self._line = 1
+        self._ids: set[str] = set()
+        self.teacher = ""
+        self.concepts: list[str] = []
+        rules: dict[str, Callable[[Token], str]] = {
+            "live": self._live, "link_open": self._link, "math_inline": self._math, "math_inline_double": self._math,
+            "math_block": self._math, "math_block_label": self._math,
+        }  # fmt: skip
+        for name, rule in rules.items():
+            md.add_render_rule(name, lambda _, tokens, k, *__, rule=rule: rule(tokens[k]))
+
+    def sections(self, tokens: Sequence[Token]) -> Iterator[Section]:
+        """The parts of a lesson by their headings; a heading that is a link to a state begins a step."""
+        starts = [
+            k
+            for k, token in enumerate(tokens)
+            if token.type == "heading_open" and token.tag == "h2" and not token.level
+        ]
+        if before := tokens[: starts[0] if starts else len(tokens)]:
+            yield Section("start", "", self._blocks(before))
+        for k, end in zip(starts, [*starts[1:], len(tokens)], strict=True):
+            yield self._section(tokens[k + 1], tokens[k + 3 : end])
+
+    def _section(self, heading: Token, body: Sequence[Token]) -> Section:
+        self._line = line(heading)
+        title = words(heading)
+        slug = self._id(title)
+        link = next((each for each in heading.children or () if each.type == "link_open"), None)
+        if link is None:
+            return Section(slug, title, self._blocks(body))
+        if (state := self._read(unquote(str(link.attrs["href"])))) is None:
+            return Section(slug, title, "")
+        self._state = state
+        first = next((words(token) for token in body if token.type == "inline"), "")
+        said = SENTENCE.match(first)
+        step = Step(slug, title, state, said[0] if said else first)
+        return Section(slug, title, self._blocks(body), step)
+
+    def _id(self, title: str) -> str:
+        slug = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") or "part"
+        while slug in self._ids:
+            slug += "-2"
+        self._ids.add(slug)
+        return slug
+
+    # ---- blocks
+
+    def _blocks(self, tokens: Sequence[Token]) -> str:
+        """Blocks in their order; boxes are made by those who know them."""
+        html, k = "", 0
+        while k < len(tokens):
+            token = tokens[k]
+            self._line = line(token) if token.map else self._line
+            if not token.type.startswith("container_"):
+                end = next((i for i in range(k, len(tokens)) if tokens[i].type.startswith("container_")), len(tokens))
+                html += self._plain(tokens[k:end])
+                k = end
+                continue
+            end = next(
+                i
+                for i in range(k, len(tokens))
+                if tokens[i].type == token.type[:-4] + "close" and tokens[i].level == token.level
+            )
+            html += self._box(token, list(tokens[k + 1 : end]))
+            k = end + 1
+        return html
+
+    def _plain(self, tokens: Sequence[Token]) -> str:
+        html = ""
+        for run in _by_line(tokens):
+            self._line = next((line(token) for token in run if token.map), self._line)
+            html += str(self._renderer.render(list(run), self._md.options, {}))
+        return html
+
+    def _inline(self, tokens: Sequence[Token]) -> str:
+        return str(self._renderer.renderInline(list(tokens), self._md.options, {}))
+
+    def _box(self, token: Token, inside: list[Token]) -> str:
+        self._line = line(token)
+        info = token.info.strip()
+        kind, *_ = info.split()
+        if kind == "teacher":
+            self.teacher += self._blocks(inside)
+            return ""
+        hand = Hand(self._plain, self._inline, self._state_of)
+        try:
+            if kind == "predict":
+                return boxes.predict(self._sim, info, inside, hand)
+            if kind == "check":
+                return boxes.check(inside, hand)
+            return boxes.challenge(self._sim.challenges, info, inside, hand)
+        except Wrong as wrong:
+            return self._wrong(wrong.found, wrong.allowed)
+
+    def _state_of(self, query: str) -> State:
+        try:
+            return read(self._sim, query, self._library)
+        except LookupError as error:
+            raise Wrong(f"the state {query}", error.args[0]) from None
+
+    # ---- what stands in the text
+
+    def _live(self, token: Token) -> str:
+        kinds: dict[str, Callable[[str], str]] = {"value": self._value, "drag": self._drag, "concept": self._concept}
+        return kinds[token.meta["kind"]](token.meta["what"])
+
+    def _value(self, what: str, tag: str = "output") -> str:
+        try:
+            value = shown(self._sim, what)
+            return value.html(self._state.value(value.path), tag)
+        except LookupError as error:
+            return self._wrong(f"{{value:{what}}}", error.args[0])
+
+    def _drag(self, name: str) -> str:
+        kind = self._sim.params.numeric.get(name)
+        if kind is None or not isinstance(value := self._state.given[name], (int, float)):
+            numbers = [n for n in self._sim.params.numeric if isinstance(self._state.given[n], (int, float))]
+            return self._wrong(f"{{drag:{name}}}", "one of " + ", ".join(numbers))
+        low, high = self._state.params.bounds(name)
+        number = shown(self._sim, name)
+        return (
+            f'<span class="drag"><input type="text" inputmode="decimal" role="spinbutton" size="1" value="{value:g}" '
+            f'autocomplete="off" data-drag="{name}" data-step="{kind.step:g}" aria-valuemin="{low:g}" '
+            f'aria-valuemax="{high:g}" aria-valuenow="{value:g}" aria-label="{escape(self._state.params.label(name))}">'
+            f"{escape(number.unit)}</span>"
+        )
+
+    def _concept(self, what: str) -> str:
+        slug, _, said = what.partition(":")
+        if slug not in CONCEPTS:
+            return self._wrong(f"{{concept:{what}}}", "one of " + ", ".join(CONCEPTS))
+        self.concepts.append(slug)
+        return f'<dfn id="concept-{slug}">{escape(said.replace("_", " ") or CONCEPTS[slug])}</dfn>'
+
+    def _math(self, token: Token) -> str:
+        block = token.type != "math_inline"
+        try:
+            made = formula.mathml(token.content, block=block, live=lambda what: self._value(what, "mn"))
+        except ValueError as error:
+            return self._wrong(str(error), "LaTeX that stands in a formula of a textbook, and {value:…}")
+        for name in formula.points(token.content):
+            if f'data-link="{escape(name)}' not in self._state.column:
+                linked = sorted(
+                    {each for names in re.findall(r'data-link="([^"]*)"', self._state.column) for each in names.split()}
+                )
+                self._wrong(f"\\point{{{name}}}", "one of " + ", ".join(linked))
+        return made
+
+    def _link(self, token: Token) -> str:
+        href = unquote(str(token.attrs["href"]))
+        if href.startswith("?"):
+            state = self._read(href)
+            set_ = "" if state is None else escape(json.dumps(setting(state)))
+            return f'<a href="{escape(href)}" data-set="{set_}">'
+        live = f' data-href="{escape(href)}"' if LIVE.search(href) else ""
+        href = LIVE.sub(lambda found: self._spelled(found[2]), href)
+        if href.startswith("/"):
+            return f'<a href="..{escape(href)}"{live.replace("/", "../", 1)}>'
+        if href.startswith("#"):
+            return f'<a href="{escape(href)}">'
+        if not href.startswith(OUTSIDE):
+            return self._wrong(f"a link to {href}", "?state, /page of this server, #part, or https://…")
+        return f'<a href="{escape(href)}" rel="noreferrer">'
+
+    def _spelled(self, what: str) -> str:
+        """A value as it stands in a link."""
+        try:
+            value = shown(self._sim, what)
+            found = self._state.value(value.path)
+        except LookupError as error:
+            return self._wrong(f"{{value:{what}}}", error.args[0])
+        numbers = found if isinstance(found, list) else [found]
+        return ",".join(f"{each:.{value.digits or 6}g}" for each in numbers)
+
+    # ---- what is wrong
+
+    def _read(self, query: str) -> State | None:
+        try:
+            return self._state_of(query)
+        except Wrong as wrong:
+            self._wrong(wrong.found, wrong.allowed)
+            return None
+
+    def _wrong(self, found: str, allowed: str) -> str:
+        self._mistakes.append(Mistake(self._line, found, allowed))
+        return ""
+
+
+def _by_line(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
+    """Blocks one by one, so that what is wrong in one is said with its line."""
+    start = 0
+    for k, token in enumerate(tokens):
+        if (token.level == 0 and token.nesting <= 0) or (k + 1 == len(tokens)):
+            yield tokens[start : k + 1]
+            start = k + 1

@@ -1,0 +1,73 @@
+"""The lessons of a server: one for each sim, and those of the administrator's folder."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Callable
+from pathlib import Path
+from threading import Lock
+
+from app.lessons.errors import LessonError, Mistake
+from app.lessons.lesson import Lesson, load
+from app.lessons.state import AnySim
+from app.settings import ROOT
+from sims.kit.sim import Library
+
+log = logging.getLogger("sim3")
+NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+LEARNT = re.compile(r"\{concept:([a-z0-9-]+)")
+
+
+class Shelf:
+    """All lessons, each loaded once: those of the sims when they are first asked for."""
+
+    def __init__(
+        self, sims: tuple[AnySim, ...], given: Callable[[AnySim], tuple[Library, ...]], folder: Path | None = None
+    ) -> None:
+        self._sims = sims
+        self._given = given
+        self._of_sims: dict[str, Lesson | None] = {}
+        self._turn = Lock()  # a page may ask while all are loaded ahead
+        self.own: dict[str, Lesson] = {}
+        """Those of the folder, by their names."""
+        self.broken: dict[str, LessonError] = {}
+        """What is wrong with those of its files that are no lessons, by the files' names."""
+        for path in sorted(folder.glob("*.md")) if folder is not None else ():
+            self._add(path)
+
+    def of_sim(self, sim: AnySim) -> Lesson | None:
+        """The lesson of a sim, if it has one. Raises LessonError."""
+        with self._turn:
+            if sim.slug not in self._of_sims:
+                path = place(sim)
+                self._of_sims[sim.slug] = self._load(path, sim.slug) if path.is_file() else None
+            return self._of_sims[sim.slug]
+
+    def load_all(self) -> None:
+        """Load the lessons of all sims, so that nobody waits for one."""
+        for sim in self._sims:
+            self.of_sim(sim)
+
+    def concepts(self) -> dict[str, str]:
+        """In which sim's lesson, by its slug, each concept is learnt."""
+        found = {sim.slug: LEARNT.findall(place(sim).read_text("utf-8")) for sim in self._sims if place(sim).is_file()}
+        return {concept: slug for slug, concepts in found.items() for concept in concepts}
+
+    def _load(self, path: Path, name: str) -> Lesson:
+        return load(path, name, self._sims, self._given)
+
+    def _add(self, path: Path) -> None:
+        try:
+            if not NAME.fullmatch(path.stem):
+                allowed = "small letters, digits and hyphens, as in our-robot.md"
+                raise LessonError(path.name, [Mistake(1, f"the name {path.name}", allowed)])
+            self.own[path.stem] = self._load(path, path.stem)
+        except LessonError as error:
+            self.broken[path.name] = error
+            log.warning("not a lesson:\n%s", error)
+
+
+def place(sim: AnySim) -> Path:
+    """Where the lesson of a sim is written."""
+    return ROOT / "sims" / sim.slug.replace("-", "_") / "lesson.md"

@@ -1,0 +1,148 @@
+"""What a lesson says of a sim's state: the values that its text shows, asks for and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from typing import Any
+from urllib.parse import parse_qsl
+
+from app.routes import links
+from geometry import GeometryError
+from sims.kit.column import Column
+from sims.kit.controls import unit_of
+from sims.kit.params import Params
+from sims.kit.readout import figure, quantity
+from sims.kit.refusals import BadParams
+from sims.kit.sim import Library, Sim, jsonable
+
+AnySim = Sim[Any, Any]
+NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class State:
+    """A sim in a state, as a query names it, and what follows from it."""
+
+    sim: AnySim
+    query: str
+    params: Params
+    view: list[float] | None
+    """Viewpoint and look-at, where the query has them."""
+    library: tuple[Library, ...] = ()
+    """The server's files for the sim, if it takes any."""
+
+    @cached_property
+    def solution(self) -> Any:
+        """Of the parameters."""
+        return self.sim.solve(self.params, *self.library)
+
+    @cached_property
+    def given(self) -> dict[str, Any]:
+        """The parameters as JSON."""
+        return self.params.model_dump(mode="json")
+
+    @cached_property
+    def found(self) -> Any:
+        """The solution as JSON."""
+        return jsonable(self.solution)
+
+    @cached_property
+    def column(self) -> str:
+        """All that stands beside the scene."""
+        return Column(self.sim, self.library).html(self.params, self.solution)
+
+    def value(self, path: str) -> Any:
+        """The value at a path such as pitch, R.0.2 or solution.selected. Raises LookupError in words."""
+        first, *rest = path.split(".")
+        if first == "solution" and rest:
+            first, *rest = rest
+            at: Any = self.found
+        else:
+            at = self.given if first in self.given else self.found
+        if first not in at:
+            raise LookupError("a parameter or a field of the solution: " + ", ".join([*self.given, *self.found]))
+        at = at[first]
+        for step in rest:
+            at = _within(at, step)
+        return at
+
+
+def _within(at: Any, step: str) -> Any:
+    if isinstance(at, Mapping) and step in at:
+        return at[step]
+    if isinstance(at, Sequence) and not isinstance(at, str) and step.isdecimal() and int(step) < len(at):
+        return at[int(step)]
+    if isinstance(at, Mapping):
+        raise LookupError("one of " + ", ".join(at))
+    if isinstance(at, Sequence) and not isinstance(at, str):
+        raise LookupError(f"0 to {len(at) - 1}")
+    raise LookupError("nothing after the value")
+
+
+def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
+    """The state that a query names. Raises LookupError in words."""
+    try:
+        items = parse_qsl(query.removeprefix("?"), keep_blank_values=True, strict_parsing=bool(query.strip("?")))
+    except ValueError:
+        raise LookupError("a link's query, as in ?pitch=90&yaw=30") from None
+    try:
+        params = links.read(sim, items)
+        state = State(sim, params.query(), params, _view(dict(items)), library)
+        state.solution  # noqa: B018 what has no solution isn't a state of a lesson
+    except BadParams as error:
+        name, _, allowed = error.complaints[0][:3]
+        raise LookupError(f"for {name}: {allowed}") from None
+    except GeometryError as error:
+        raise LookupError(f"for {error.argument}: {error.allowed}") from None
+    return state
+
+
+def setting(state: State) -> dict[str, Any]:
+    """What a page asks a sim for to have it in a state."""
+    return {"query": state.query, "params": state.given, **({} if state.view is None else {"view": state.view})}
+
+
+def _view(given: Mapping[str, str]) -> list[float] | None:
+    return [float(each) for each in given["view"].split(",")] if "view" in given else None
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How a value is shown in the text: with digits, and its unit where it is a parameter."""
+
+    path: str
+    digits: int | None
+    unit: str
+
+    def text(self, value: Any) -> str:
+        """For people."""
+        if value is None:
+            return NOTHING
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        if isinstance(value, (int, float)):
+            return quantity(value, self.unit, self._digits(value))
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            return f"({', '.join(figure(each, self._digits(each)) for each in value)})"
+        return str(value)
+
+    def _digits(self, value: float) -> int:
+        return (0 if isinstance(value, int) else 3) if self.digits is None else self.digits
+
+    def html(self, value: Any, tag: str = "output") -> str:
+        """An element that is kept up to date."""
+        digits = "" if self.digits is None else f' data-digits="{self.digits}"'
+        unit = f' data-unit="{escape(self.unit)}"' if self.unit else ""
+        return f'<{tag} data-value="{escape(self.path)}"{digits}{unit}>{escape(self.text(value))}</{tag}>'
+
+
+def shown(sim: AnySim, what: str) -> Shown:
+    """What {value:…} means: a path, and with another colon how many digits. Raises LookupError in words."""
+    path, _, digits = what.partition(":")
+    if digits and not (digits.isdecimal() and int(digits) <= 9):
+        raise LookupError("after the path a colon and 0 to 9 digits")
+    kind = sim.params.kinds.get(path)
+    return Shown(path, int(digits) if digits else None, "" if kind is None else unit_of(kind))

@@ -1,0 +1,55 @@
+"""The course: launcher, lessons, and where each concept is learnt."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, HTTPException, Request
+from fastapi.responses import RedirectResponse, Response
+
+from app.lessons.concepts import CONCEPTS
+from app.lessons.lesson import Lesson
+from app.routes import links, rendering
+from app.routes.pages import page
+from app.routes.rendering import AnySim, sim_or_404
+from app.routes.services import Given
+
+router = APIRouter(include_in_schema=False)
+
+
+@page("/", router)
+async def launcher(request: Request, given: Given) -> Response:
+    return rendering.render(request, "launcher.html", shelf=given.lessons)
+
+
+@page("/sims/{slug}", router)
+async def of_sim(request: Request, given: Given, slug: str) -> Response:
+    sim = sim_or_404(slug)
+    return _lesson(request, sim, given.lessons.of_sim(sim))
+
+
+@page("/lessons/{name}", router)
+async def own(request: Request, given: Given, name: str) -> Response:
+    if name not in given.lessons.own:
+        raise HTTPException(404, f"There is no lesson named {name[:60]!r}.")
+    lesson = given.lessons.own[name]
+    return _lesson(request, lesson.sim, lesson)
+
+
+def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
+    """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
+    items = request.query_params.multi_items()
+    links.read(sim, items)
+    query = links.own(items)
+    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query)
+
+
+@page("/concepts", router)
+async def concepts(request: Request, given: Given) -> Response:
+    return rendering.render(request, "concepts.html", concepts=CONCEPTS, places=given.lessons.concepts())
+
+
+@page("/concepts/{slug}", router)
+async def concept(request: Request, given: Given, slug: str) -> Response:
+    place = given.lessons.concepts().get(slug)
+    if place is None:
+        raise HTTPException(404, f"There is no concept named {slug[:60]!r}.")
+    return RedirectResponse(f"{rendering.base(request)}/sims/{place}#concept-{slug}")
