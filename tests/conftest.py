@@ -25,6 +25,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
 
 
+def pytest_collection_finish() -> None:
+    """Modules and tests live as long as the run: no collection of garbage looks through them again."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.fixture(scope="session")
 def browser_type_launch_args() -> LaunchOptions:
     """For pytest-playwright's own `browser`, which lives as long as the test run."""

@@ -262,8 +262,12 @@ class Browser:
     def settle(self) -> None:
         """Wait until everything that viser has to send has arrived."""
         mark = f"{next(self._labels)}"
-        self._host.call(lambda: self.client.gui.set_panel_label(mark))
-        self._host.call(self.client.flush)
+
+        def ask() -> None:
+            self.client.gui.set_panel_label(mark)
+            self.client.flush()
+
+        self._host.call(ask)
         latest = self.model.latest
         wait_for(lambda: latest.get("SetGuiPanelLabelMessage", {}).get("label") == mark, "what viser has to send")
 

@@ -49,7 +49,7 @@ def test_a_foreign_plugin_of_pytest_does_not_hurt(tmp_path: Path) -> None:
     (foreign / "METADATA").write_text("Metadata-Version: 2.1\nName: foreign\nVersion: 1.0\n")
     (foreign / "entry_points.txt").write_text("[pytest11]\nforeign = foreign_plugin\n")
     (tmp_path / "foreign_plugin.py").write_text("import warnings\nwarnings.warn('old', DeprecationWarning)\n")
-    asked = [sys.executable, "-m", "pytest", "-q", "--collect-only", "tests/test_imports.py"]
+    asked = [sys.executable, "-m", "pytest", "-q", "--collect-only", "--noconftest", "tests/test_style_sheets.py"]
     environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
     ended = subprocess.run(asked, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout + ended.stderr
