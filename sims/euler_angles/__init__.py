@@ -13,7 +13,8 @@ from sims.euler_angles.readouts import FACTORS, FORMS, caption, describe, readou
 from sims.euler_angles.scene import EulerScene
 from sims.euler_angles.solution import EulerSolution, solve
 from sims.kit.paste import Paste
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim
+from sims.kit.view import View
 
 __all__ = ["CONTRACT", "SIM", "EulerParams", "EulerSolution", "solve"]
 
