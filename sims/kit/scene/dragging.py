@@ -60,8 +60,8 @@ def listen_round(
             held = np.array(grip.position)
         normal = np.asarray(axis(), dtype=float)
         spot = np.array(on_circle(spot, normal, eye(), event.end_position))
-        across = [place - normal * (normal @ place) for place in (taken, spot)]
-        angle = math.atan2(float(normal @ np.cross(*across)), float(across[0] @ across[1]))
+        before, now = (place - normal * (normal @ place) for place in (taken, spot))
+        angle = math.atan2(float(normal @ np.cross(before, now)), float(before @ now))
         x, y, z = (axis_angle_to_matrix(normal, angle) @ held).tolist()
         drag((x, y, z))
 
