@@ -300,6 +300,19 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
     assert tall == [], "labels that take two lines"
 
 
+COVERED = """() => [...document.querySelectorAll(".s3-column :is(input, select, button, summary)")].filter((node) => {
+    if (!node.checkVisibility() || node.matches(".s3-primary")) return false;
+    node.focus();
+    const [one, first] = [node, document.querySelector(".s3-primary")].map((each) => each.getBoundingClientRect());
+    return one.bottom > first.top && one.top < first.bottom && one.right > first.left && one.left < first.right;
+}).map((node) => node.outerHTML.slice(0, 90))"""
+
+
+def test_the_button_that_stays_in_sight_covers_nothing_that_has_the_focus(column: Open) -> None:
+    learner = column("triangulation/embed", size=ViewportSize(width=700, height=600))
+    assert learner.frame.evaluate(COVERED) == []
+
+
 def test_fingers_have_room(column: Open) -> None:
     learner = column("camera/embed", size=ViewportSize(width=390, height=780), has_touch=True, is_mobile=True)
     small = learner.frame.evaluate(TARGETS.replace("LEAST", "43.5"))
