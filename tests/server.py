@@ -293,9 +293,12 @@ class Browser:
         """Everything that is seen."""
         return {**self.model.snapshot(), **self.column.snapshot()}
 
-    def drag(self, name: str, *places: tuple[float, float, float], modifier: str | None = None) -> None:
-        """Take a node at its middle, lead it through places in the world, and let go."""
-        grabbed = tuple(self.model.world_pose(name)[:3, 3].tolist())
+    def drag(
+        self, name: str, *places: tuple[float, float, float], modifier: str | None = None,
+        taken: tuple[float, float, float] | None = None,
+    ) -> None:  # fmt: skip
+        """Take a node at its middle, or at a place in the world, lead it through places, and let go."""
+        grabbed = tuple(self.model.world_pose(name)[:3, 3].tolist()) if taken is None else taken
         path = [("start", grabbed), *(("update", place) for place in places), ("end", places[-1])]
         for phase, place in path:
             self.send(

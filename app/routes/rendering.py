@@ -18,7 +18,8 @@ from sims.kit import viser_client
 from sims.kit.palette import DARK
 from sims.kit.paste import LONGEST
 from sims.kit.scene.view import FIELD
-from sims.kit.sim import Sim, View
+from sims.kit.sim import Sim
+from sims.kit.view import View
 
 AnySim = Sim[Any, Any]
 

@@ -7,7 +7,7 @@ import numpy as np
 from sims.camera.params import CameraParams
 from sims.camera.solution import CameraSolution, camera_of
 from sims.kit.scene.view import Window
-from sims.kit.sim import View
+from sims.kit.view import View
 
 AWAY = 300.0
 """Metres behind the camera from which its lines of sight are as good as parallel."""

@@ -10,7 +10,8 @@ from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import ALL, AXES, HOMOGENEOUS, caption, describe, readouts
 from sims.coordinate_frames.scene import FramesScene, seen
 from sims.coordinate_frames.solution import FramesSolution, solve
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim
+from sims.kit.view import View
 
 __all__ = ["CONTRACT", "SIM", "FramesParams", "FramesSolution", "solve"]
 

@@ -15,8 +15,8 @@ from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import quantity
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import View
 from sims.kit.types import ORIGIN
+from sims.kit.view import View
 from sims.kit.world_drawing import draw_in_scene
 
 SPOT = 0.045

@@ -13,7 +13,8 @@ from sims.euler_angles.readouts import FACTORS, FORMS, caption, describe, readou
 from sims.euler_angles.scene import EulerScene
 from sims.euler_angles.solution import EulerSolution, solve
 from sims.kit.paste import Paste
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim
+from sims.kit.view import View
 
 __all__ = ["CONTRACT", "SIM", "EulerParams", "EulerSolution", "solve"]
 
@@ -37,7 +38,7 @@ SIM = Sim(
     readouts=readouts,
     folds=(FACTORS, FORMS),
     describe=describe,
-    view=View((3.3, -3.0, 2.0), (0.0, 0.0, 0.0), 1.9),
+    view=View((3.5, -2.78, 2.0), (0.2, 0.22, 0.0), 1.9),
     handles=HANDLES,
     paste=Paste(
         group="Paste a rotation",

@@ -19,7 +19,7 @@ from sims.kit.types import Place, Vector
 TIPS = (0.92, 0.94)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
-ANCHORS = dict(zip(RADII, ("top-center", "center-left", "center-left"), strict=True))
+ANCHORS = dict(zip(RADII, ("top-center", "bottom-left", "center-left"), strict=True))
 """The first label hangs lower, clear of the next one where the two arcs meet; the others stand beside their arcs."""
 
 

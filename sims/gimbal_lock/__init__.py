@@ -13,7 +13,8 @@ from sims.gimbal_lock.params import LOCK, GimbalParams
 from sims.gimbal_lock.readouts import ROTATION, caption, describe, readouts
 from sims.gimbal_lock.scene import GimbalScene
 from sims.gimbal_lock.solution import GimbalSolution, solve
-from sims.kit.sim import Action, Contract, Objective, Sim, View
+from sims.kit.sim import Action, Contract, Objective, Sim
+from sims.kit.view import View
 
 __all__ = ["CONTRACT", "SIM", "GimbalParams", "GimbalSolution", "solve"]
 

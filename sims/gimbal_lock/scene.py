@@ -64,6 +64,9 @@ class GimbalScene:
         stage.axes("/world", 0.4, radius=0.008).pose(position=WORLD)
         holders = ["", "/outer", "/outer/middle", "/outer/middle/inner"]
         self.rings = [stage.group(name) for name in holders[1:]]
+        bodies = [
+            stage.mesh(f"{k}/ring", meshes.ring(ring), ring.letter) for k, ring in zip(holders[1:], RINGS, strict=True)
+        ]
         self.labels = [self._ring(stage, ring, *pair) for ring, *pair in zip(RINGS, holders, holders[1:], strict=False)]
         stage.aircraft(holders[3], scale=AIRCRAFT)
         stage.mesh(f"{holders[3]}/mount", meshes.mount(AIRCRAFT), steel)
@@ -74,7 +77,10 @@ class GimbalScene:
         self.ghost_label = stage.label("/ghost/label", "", (-0.75, 0.0, 0.4))
         self.reach = Reach(stage)
         self.axes = np.eye(3)
-        self.grips = [stage.grip(ring.grip, GRIP, axis=partial(self._axis, k)) for k, ring in enumerate(RINGS)]
+        axes = [partial(self._axis, k) for k in range(3)]
+        self.grips = [stage.grip(ring.grip, GRIP, axis=axis) for ring, axis in zip(RINGS, axes, strict=True)]
+        for ring, body, grip, axis in zip(RINGS, bodies, self.grips, axes, strict=True):
+            stage.turned_by(body, ring.grip, grip, axis)
         self.lamps = Lamps(stage)
 
     def _axis(self, k: int) -> Vector:
@@ -82,8 +88,7 @@ class GimbalScene:
         return axis
 
     def _ring(self, stage: Stage, ring: Ring, holder: str, name: str) -> Label:
-        """The ring; and its pivots and axis, which stay with what holds it."""
-        stage.mesh(f"{name}/ring", meshes.ring(ring), ring.letter)
+        """The ring's stripe; and its pivots and axis, which stay with what holds it."""
         stage.mesh(f"{name}/stripe", meshes.stripe(ring), "page")
         stage.mesh(f"{holder}/pivots", meshes.pivots(ring), ring.letter)
         along = np.eye(3)["xyz".index(ring.letter)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -18,15 +18,10 @@ from sims.kit.params import Params
 from sims.kit.paste import Paste
 from sims.kit.readout import Readout
 from sims.kit.scene.stage import Stage
+from sims.kit.view import View
 
 DRAWN: Mapping[str, Any] = {"drawn": True}
 """Metadata of a Solution's field that the scene alone needs: too large to go out."""
-SPARE = 1.25
-"""How much farther than the radius of a view is still in sight: a scene is wider than it is high, or higher."""
-STEP = 1.25
-"""How much farther each step back leads: seldom, and by enough to be seen as one."""
-RUN_AWAY = 6.0
-"""Radii of the view beyond which nobody steps back for a place."""
 P = TypeVar("P", bound=Params)
 S = TypeVar("S")
 P_in = TypeVar("P_in", bound=Params, contravariant=True)
@@ -139,28 +134,6 @@ class Files:
     previewed: str = ""
     """The parameter above whose controls the `preview` stands: what a file holds, or None."""
     preview: Callable[..., Readout | None] = lambda *_: None
-
-
-@dataclass(frozen=True)
-class View:
-    """First viewpoint and look-at point in the world, and the radius round it that must fit, in metres.
-
-    With radius 0 it is from just there, at every size of the page; the scene then moves the viewpoint itself, by
-    `Stage.look_through`.
-    """
-
-    position: tuple[float, float, float]
-    look_at: tuple[float, float, float]
-    radius: float
-
-    def holding(self, places: Iterable[npt.ArrayLike]) -> View:
-        """The same, or from so many steps farther away that these places are in sight; not those that run away."""
-        if not self.radius:
-            return self
-        far = [math.dist(np.asarray(place, dtype=float), self.look_at) / self.radius for place in places]
-        farthest = max((distance for distance in far if distance < RUN_AWAY), default=0.0)
-        steps = max(0, math.ceil(math.log(max(farthest / SPARE, 1.0), STEP)))
-        return replace(self, radius=self.radius * STEP**steps)
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,9 @@ from geometry import GeometryError
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import Sim, View
+from sims.kit.sim import Sim
 from sims.kit.types import Place, Vector
+from sims.kit.view import View
 
 FARTHEST = 1e4
 """Metres that a viewpoint may be away."""

@@ -13,7 +13,7 @@ from geometry import clouds
 from geometry.arrays import Array
 from geometry.clouds import Indices
 from sims.kit.palette import LIGHT, rgb
-from sims.kit.sim import View
+from sims.kit.view import View
 from sims.point_cloud import colors, processes
 from sims.point_cloud.cloud import Cloud, Colors
 from sims.point_cloud.derived import Look, Tally, cells_of, normals, painted, parts

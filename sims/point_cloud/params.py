@@ -9,8 +9,8 @@ from pydantic import model_validator
 
 from sims.kit.fields import Choice, Letters, NumberBox, Slider, Switch, Text, Vector
 from sims.kit.params import Params, with_entries
-from sims.kit.sim import View
 from sims.kit.spelling import spell
+from sims.kit.view import View
 from sims.point_cloud.files.meaning import ROLES, letters_of
 from sims.point_cloud.processes import LAST
 from sims.point_cloud.registration import MOST_STEPS

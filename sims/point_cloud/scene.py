@@ -13,8 +13,8 @@ from sims.kit.palette import before_film, rgb
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.nodes import Arrows, Cloud, Node
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import View
 from sims.kit.types import ORIGIN
+from sims.kit.view import View
 from sims.point_cloud.layers import Layer, boxed
 from sims.point_cloud.params import VIEWS, CloudParams
 from sims.point_cloud.scene_selected import About

@@ -18,7 +18,7 @@ from geometry.hamilton import from_ball, to_ball
 from sims.kit.palette import AXES
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
-from sims.kit.sim import View
+from sims.kit.view import View
 from sims.quaternion.params import TWICE, WHOLE, QuaternionParams
 from sims.quaternion.solution import QuaternionSolution
 

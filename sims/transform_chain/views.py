@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.kinematics import Chain
-from sims.kit.sim import View
 from sims.kit.types import Place
+from sims.kit.view import View
 from sims.transform_chain.params import ChainParams
 from sims.transform_chain.solution import USUAL, ChainSolution
 

@@ -7,7 +7,8 @@ the rays meet, or nearly meet, and noise in the pixels says how far that may be 
 from __future__ import annotations
 
 from sims.kit.paste import Paste
-from sims.kit.sim import Action, Contract, Objective, Sim, Typed, View
+from sims.kit.sim import Action, Contract, Objective, Sim, Typed
+from sims.kit.view import View
 from sims.triangulation import actions, calibration
 from sims.triangulation.captions import caption
 from sims.triangulation.panes import panes

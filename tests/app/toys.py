@@ -11,7 +11,8 @@ from geometry import GeometryError
 from sims.kit.fields import Choice, Slider
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
-from sims.kit.sim import Action, Sim, Step, View
+from sims.kit.sim import Action, Sim, Step
+from sims.kit.view import View
 
 IMPOSSIBLE = 13.0
 """At this size there is no solution."""

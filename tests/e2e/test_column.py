@@ -255,6 +255,19 @@ def test_only_some_controls_are_there_when_a_link_says_so(column: Open) -> None:
 
 
 CUT = "all => all.filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+# Boxes that cut the longest number of six digits; units that stand beside no box.
+NARROW = """() => [...document.querySelectorAll("[data-box]")].filter((box) => {
+    const { value } = box;
+    box.value = "−0.176252";
+    const cut = box.checkVisibility() && !box.closest(".s3-vector") && box.scrollWidth > box.clientWidth;
+    box.value = value;
+    return cut;
+}).map((box) => box.dataset.box)"""
+STRAY = """() => [...document.querySelectorAll(".s3-vector > .s3-unit")].filter((unit) => {
+    const boxes = unit.parentElement.querySelectorAll("input");
+    const [beside, at] = [boxes[boxes.length - 1], unit].map((node) => node.getBoundingClientRect());
+    return unit.checkVisibility() && (at.left < beside.right || at.top < beside.top || at.bottom > beside.bottom);
+}).map((unit) => unit.parentElement.dataset.vector)"""
 SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
 
 
@@ -270,8 +283,11 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
         frame.evaluate(folds, True)
         over = frame.evaluate("(c => c.scrollWidth - c.clientWidth)(document.querySelector('.s3-column'))")
         assert over <= 0, f"{width}×{height}: the column scrolls sideways by {over}"
-        for what in (".s3-formula:visible", "[data-box]:visible"):
-            assert not frame.locator(what).evaluate_all(CUT), f"{width}×{height}: {what} is cut off"
+        for what in (".s3-formula", "[data-box]", ".s3-caption", "figcaption b", "figcaption span"):
+            assert not frame.locator(f"{what}:visible").evaluate_all(CUT), f"{width}×{height}: {what} is cut off"
+        assert frame.evaluate(NARROW) == frame.evaluate(STRAY) == [], f"{width}×{height}"
+        primary = box(frame.locator(".s3-primary"))
+        assert primary["y"] + primary["height"] <= height, f"{width}×{height}: the first action is out of sight"
         scene, column_ = box(frame.locator(".s3-scene")), box(frame.locator(".s3-column"))
         assert scene["width"] * scene["height"] > 0.25 * width * height, f"{width}×{height}: the scene is small"
         assert scene["x"] + scene["width"] <= column_["x"] + 1 or scene["y"] + scene["height"] <= column_["y"] + 1
@@ -282,8 +298,19 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
         "all => all.filter((l) => l.clientHeight > 27).map((l) => l.innerText)"
     )
     assert tall == [], "labels that take two lines"
-    primary = box(frame.locator(".s3-primary"))
-    assert primary["y"] + primary["height"] <= 800, "the first action is out of sight"
+
+
+COVERED = """() => [...document.querySelectorAll(".s3-column :is(input, select, button, summary)")].filter((node) => {
+    if (!node.checkVisibility() || node.matches(".s3-primary")) return false;
+    node.focus();
+    const [one, first] = [node, document.querySelector(".s3-primary")].map((each) => each.getBoundingClientRect());
+    return one.bottom > first.top && one.top < first.bottom && one.right > first.left && one.left < first.right;
+}).map((node) => node.outerHTML.slice(0, 90))"""
+
+
+def test_the_button_that_stays_in_sight_covers_nothing_that_has_the_focus(column: Open) -> None:
+    learner = column("triangulation/embed", size=ViewportSize(width=700, height=600))
+    assert learner.frame.evaluate(COVERED) == []
 
 
 def test_fingers_have_room(column: Open) -> None:

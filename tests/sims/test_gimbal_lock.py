@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from geometry.rotations import axis_angle_to_matrix
 from sims.gimbal_lock import SIM, GimbalParams, digits, meshes, rings, solve
 from sims.gimbal_lock.params import NEAR, NEAR_PITCH
 from sims.gimbal_lock.scene import PER_RATE
@@ -197,7 +198,9 @@ def test_rings_differ_by_colour_dashes_and_letter(rig: Rig) -> None:
 @pytest.mark.parametrize("changes", [*POSES, {"yaw": -20, "pitch": -150, "roll": 91}])
 def test_each_ring_is_held_on_itself_half_way_between_its_pivots(rig: Rig, changes: dict[str, Any]) -> None:
     rig.show(state(**changes))
-    assert set(rig.model.draggable()) == {ring.grip for ring in rings.RINGS}
+    assert set(rig.model.draggable()) == {
+        each for ring in rings.RINGS for each in (ring.grip, f"{RINGS[ring.name]}/ring")
+    }
     for ring in rings.RINGS:
         place = rig.model.world_pose(ring.grip)[:3, 3]
         on_ring = np.linalg.norm(rig.model.points(f"{RINGS[ring.name]}/ring") - place, axis=1)
@@ -234,6 +237,26 @@ def test_a_hand_leads_a_ring_all_round_without_a_jump(rig: Rig, ring: rings.Ring
         rig.settle()
         off = math.remainder(getattr(rig.session.params, ring.angle) - getattr(aim, ring.angle), 360.0)
         assert off == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.parametrize("ring", rings.RINGS, ids=lambda ring: ring.name)
+def test_a_ring_turns_by_its_body_wherever_it_is_taken(rig: Rig, ring: rings.Ring) -> None:
+    """The place that was taken stays under the pointer, on its way too."""
+    p = state(yaw=150, pitch=60, roll=-100)
+    rig.show(p)
+    eye = np.asarray(rig.browser.client.camera.position)
+    k = rings.RINGS.index(ring)
+    places = rig.model.points(f"{RINGS[ring.name]}/ring")[::200]
+    axis = solve(p).axes[:, k]
+    off_axis = [place for place in places if np.linalg.norm(np.cross(axis, place)) > 0.5 * ring.radius]
+    for taken in off_axis[:4]:
+        rig.show(p)
+        ways = [axis_angle_to_matrix(axis, math.radians(turn)) @ taken for turn in (25.0, 50.0, 80.0)]
+        seen = [tuple((eye + 0.8 * (place - eye)).tolist()) for place in ways]
+        rig.browser.drag(f"{RINGS[ring.name]}/ring", *seen, taken=tuple(taken.tolist()))
+        rig.settle()
+        turned = math.remainder(getattr(rig.session.params, ring.angle) - getattr(p, ring.angle), 360.0)
+        assert turned == pytest.approx(80.0, abs=0.05)
 
 
 # ---- three lamps

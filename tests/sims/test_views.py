@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from sims import SIMS, by_slug
-from sims.kit.sim import SPARE, STEP, Sim, View
+from sims.kit.sim import Sim
+from sims.kit.view import SPARE, STEP, View
 from tests.server import Rig
 
 FAR = [
@@ -36,16 +37,28 @@ def test_what_a_state_moves_away_is_still_in_sight(slug: str, changes: dict[str,
     assert sim.seen is not None
     view = home(sim, **changes)
     params = sim.params().changed(changes)
-    reach = max(math.dist(np.asarray(place), view.look_at) for place in sim.seen(params, sim.solve(params)))
-    assert view.radius > sim.view.radius
-    assert reach / SPARE <= view.radius, "it is out of sight"
-    assert view.radius < reach / SPARE * STEP, "it is looked at from too far"
-    assert (view.position, view.look_at) == (sim.view.position, sim.view.look_at)
+    own, middle = sim.home(params, None), np.array(view.look_at)
+    places = [np.asarray(place) for place in sim.seen(params, sim.solve(params))]
+    assert max(math.dist(place, middle) for place in places) <= SPARE * view.radius, "it is out of sight"
+    lost = math.dist(own.look_at, middle) + own.radius - view.radius
+    assert lost < 1e-9, "something of the sim's own view is out of sight"
+    kept = max(math.dist(place, own.look_at) for place in places)
+    assert own.radius < view.radius < kept / SPARE * STEP, "it is looked at from too far"
+    assert np.subtract(view.position, view.look_at) == pytest.approx(np.subtract(own.position, own.look_at))
 
     with Rig(sim) as rig:
         rig.show(params)
         told = [message for message in rig.browser.told if message["type"] == "home"]
         assert [(each["radius"], each["moved"]) for each in told] == [(sim.view.radius, False), (view.radius, False)]
+
+
+def test_a_wider_view_moves_its_middle_to_where_more_is_to_be_seen() -> None:
+    view = View((0.0, -5.0, 3.0), (0.0, 0.0, 1.0), 1.0)
+    ahead = view.holding([(0.0, 3.0, 1.0)])
+    assert ahead.radius == STEP**3, "a view that keeps its middle takes four steps"
+    assert (ahead.position, ahead.look_at) == ((0.0, ahead.radius - 6.0, 3.0), (0.0, ahead.radius - 1.0, 1.0))
+    around = view.holding([(0.0, 3.0, 1.0), (0.0, -3.0, 1.0)])
+    assert (around.look_at, around.radius) == (view.look_at, STEP**4)
 
 
 def test_nobody_steps_back_for_what_runs_away() -> None:

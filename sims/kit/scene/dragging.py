@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from geometry.rotations import axis_angle_to_matrix
 from sims.kit.types import Place, Vector
 
 Path = Callable[[Place, Place], Place]
@@ -40,13 +41,43 @@ def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None)
             target = origin + np.where(np.arange(3) == keep, pull, 0.0)
         drag((float(target[0]), float(target[1]), float(target[2])))
 
+    _on_drag(handle, moved)
+
+
+def listen_round(
+    handle: Any, drag: Callable[[Place], None], grip: Any, axis: Callable[[], Vector], eye: Callable[[], Vector]
+) -> None:
+    """The same for a body that turns about a unit axis through the world's origin, wherever it is taken.
+
+    `drag` is told the place to which its grip is turned, another node.
+    """
+    spot, taken, held = np.zeros(3), np.zeros(3), np.zeros(3)
+
+    def moved(event: Any, straight: bool) -> None:
+        nonlocal spot, taken, held
+        if event.phase == "start":
+            spot = taken = np.array(event.start_position)
+            held = np.array(grip.position)
+        normal = np.asarray(axis(), dtype=float)
+        spot = np.array(on_circle(spot, normal, eye(), event.end_position))
+        before, now = (place - normal * (normal @ place) for place in (taken, spot))
+        angle = math.atan2(float(normal @ np.cross(before, now)), float(before @ now))
+        x, y, z = (axis_angle_to_matrix(normal, angle) @ held).tolist()
+        drag((x, y, z))
+
+    _on_drag(handle, moved)
+
+
+def _on_drag(handle: Any, moved: Callable[[Any, bool], None]) -> None:
+    """Tell `moved` of each drag event, and whether Shift is held."""
+
     @handle.on_drag("left")  # type: ignore[untyped-decorator]
     async def _(event: Any) -> None:
-        moved(event, straight=False)
+        moved(event, False)
 
     @handle.on_drag("left", modifier="shift")  # type: ignore[untyped-decorator]
     async def _(event: Any) -> None:
-        moved(event, straight=True)
+        moved(event, True)
 
 
 def on_circle(at: Vector, axis: Vector, eye: Vector, pulled: Vector) -> Place:

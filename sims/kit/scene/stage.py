@@ -218,6 +218,11 @@ class Stage:
         dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return Grip(ball.handle, rings)
 
+    def turned_by(self, body: Node, name: str, grip: Grip, axis: Callable[[], Vector]) -> None:
+        """Have a body that the grip of that name turns turn by itself too, wherever it is taken."""
+        eye = partial(getattr, self.client.camera, "position")
+        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, axis, eye)
+
     def _round(self, axis: Callable[[], Vector]) -> dragging.Path:
         return lambda at, pulled: dragging.on_circle(at, axis(), self.client.camera.position, pulled)
 
