@@ -124,7 +124,7 @@ SIM = Sim(
 CONTRACT = Contract(
     parameters=(
         "left right left_pan right_pan focal point points show_plane show_all_lines pick trail candidate own own_left"
-        " own_right own_size own_pair"
+        " own_right own_size left_of_text right_of_text"
     ),
     solution=(
         "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"

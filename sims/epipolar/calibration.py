@@ -47,10 +47,10 @@ def read(text: str) -> list[Found]:
 
 def changes(p: EpipolarParams, found: list[Found]) -> dict[str, Any]:
     """The state with the pair that was chosen. Raises ValueError in words."""
-    if max(p.own_pair) > len(found) or p.own_pair[0] == p.own_pair[1]:
+    if max(p.left_of_text, p.right_of_text) > len(found) or p.left_of_text == p.right_of_text:
         names = ", ".join(f"{k} is {each['name']}" for k, each in enumerate(found, start=1))
-        raise ValueError(f"There is no pair of cameras {p.own_pair[0]} and {p.own_pair[1]} in the text: {names}.")
-    left, right = (found[k - 1] for k in p.own_pair)
+        raise ValueError(f"There is no pair of cameras {p.left_of_text} and {p.right_of_text} in the text: {names}.")
+    left, right = found[p.left_of_text - 1], found[p.right_of_text - 1]
     T = np.array(right["pose"]) @ np.linalg.inv(left["pose"])
     if not T[:3, 3].any():
         raise ValueError("T is zero: without a baseline there is no F.")
@@ -63,9 +63,11 @@ def changes(p: EpipolarParams, found: list[Found]) -> dict[str, Any]:
 
 def says(p: EpipolarParams, found: list[Found]) -> str:
     """Which cameras were taken, and of which pictures."""
-    left, right = (found[k - 1]["name"] for k in p.own_pair)
+    left, right = (found[k - 1]["name"] for k in (p.left_of_text, p.right_of_text))
     sizes = " and ".join(f"{width} × {height}" for width, height in p.sizes)
-    guessed = "" if p.own_size else ", as far as the principal points are in the middle: the text doesn’t say it"
+    guessed = (
+        "" if p.own_size else ", if the principal points are in their middle: the text doesn’t say how large they are"
+    )
     more = f"; for others of its {len(found)}, choose them and take it again" if len(found) > 2 else ""
     return f"Taken: {left} on the left and {right} on the right{more}. Their pictures have {sizes} pixels{guessed}."
 

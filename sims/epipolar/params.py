@@ -103,11 +103,10 @@ class EpipolarParams(Params):
         Vector(SMALLEST, LARGEST, step=1, unit="px", title="Sizes of your pictures", hidden=True),
     ] = None
     """Width and height of your left and of your right picture; absent: twice as far as their principal points are"""
-    own_pair: Annotated[tuple[int, int], Vector(1, 9, step=1, title="Left and right camera of the text", group=OWN)] = (
-        1,
-        2,
-    )
-    """Which two, where a text has more: the first is 1. Choose before you take the text"""
+    left_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Left camera of the text", group=OWN)] = 1
+    """Which one is the left one, where a text has more than two: the first is 1. Choose before you take the text"""
+    right_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Right camera of the text", group=OWN)] = 2
+    """Which one is the right one, where a text has more than two. Choose before you take the text"""
     own_left: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your left pixel", group=OWN)] = (0.0, 0.0)
     """A pixel of your left picture, free of distortion: u, v"""
     own_right: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your right pixel", group=OWN)] = (0.0, 0.0)

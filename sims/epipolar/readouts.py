@@ -87,7 +87,7 @@ def judged(c: Candidate) -> str:
             return "On the line of p, but the two rays are parallel: they meet at infinity."
         case "behind a camera":
             return "On the line of p, but the two rays part: they would meet behind a camera."
-    return "p has no line in the right picture, so nothing can be said of q′."
+    return "There is no line of p in the right picture, so nothing can be said of q′."
 
 
 def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:

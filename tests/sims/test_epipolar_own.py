@@ -163,7 +163,7 @@ def test_of_more_cameras_the_pair_is_the_chosen_one_and_it_is_said() -> None:
     first = p.changed(changes(p, found))
     np.testing.assert_allclose(first.own, EXPECTED, rtol=0, atol=1e-9)  # type: ignore[arg-type]
     assert "cam0 on the left and cam1 on the right; for others of its 4" in says(first, found)
-    p = p.changed({"own_pair": (2, 4)})
+    p = p.changed({"left_of_text": 2, "right_of_text": 4})
     chosen = p.changed(changes(p, found))
     assert chosen.own is not None
     assert chosen.own[:8] == pytest.approx(EXPECTED[4:8] * 2)
@@ -176,8 +176,8 @@ def test_of_more_cameras_the_pair_is_the_chosen_one_and_it_is_said() -> None:
 
 
 def test_three_cameras_of_opencvs_are_told_from_the_first(tmp_path: Path) -> None:
-    np.testing.assert_allclose(own(three(tmp_path), own_pair=(1, 3))[11:], 2.0 * T[:, 0], rtol=0, atol=1e-9)
-    between = own(three(tmp_path), own_pair=(2, 3))
+    np.testing.assert_allclose(own(three(tmp_path), right_of_text=3)[11:], 2.0 * T[:, 0], rtol=0, atol=1e-9)
+    between = own(three(tmp_path), left_of_text=2, right_of_text=3)
     np.testing.assert_allclose(between[8:11], np.degrees(TURN), rtol=0, atol=1e-9)
     np.testing.assert_allclose(between[11:], (2.0 * T - R @ T)[:, 0], rtol=0, atol=1e-9)
 
@@ -185,7 +185,7 @@ def test_three_cameras_of_opencvs_are_told_from_the_first(tmp_path: Path) -> Non
 @pytest.mark.parametrize("pair", [(1, 5), (2, 2)])
 def test_a_pair_that_is_not_in_the_text_is_refused_with_those_that_are(pair: tuple[int, int]) -> None:
     with pytest.raises(ValueError, match="1 is cam0, 2 is cam1, 3 is cam2, 4 is cam3"):
-        own(chain(4), own_pair=pair)
+        own(chain(4), left_of_text=pair[0], right_of_text=pair[1])
 
 
 def test_the_pictures_have_the_size_that_the_text_says_or_one_round_the_principal_points() -> None:
@@ -195,7 +195,7 @@ def test_the_pictures_have_the_size_that_the_text_says_or_one_round_the_principa
     assert "752 × 480 and 752 × 480 pixels." in says(said, read(EXAMPLE))
     unsaid = said.changed({"own_size": None})
     assert unsaid.sizes == ((735, 498), (761, 511))
-    assert "as far as the principal points are in the middle" in says(unsaid, read(EXAMPLE))
+    assert "if the principal points are in their middle" in says(unsaid, read(EXAMPLE))
     old = EpipolarParams.from_query([("own", ",".join(map(str, said.own or ())))])
     assert (old.own, old.sizes) == (said.own, unsaid.sizes), "links from before sizes were read"
 
