@@ -32,7 +32,7 @@ MATRIX = ("cameramatrix", "intrinsicmatrix", "k", "m", "mtx", "cam")
 PROJECTION = ("prect0", "p", "projectionmatrix")
 DISTORTION = ("distortioncoefficients", "distortioncoeffs", "distcoeffs", "dist", "d")
 LENS = ("fx", "fy", "cx", "cy")
-CHAIN = "tcncnm1"
+CHAIN, POSE = "tcncnm1", ("r", "t")
 ROTATION = 1e-4
 """By how much the entries of a matrix may differ from those of a rotation: files have a few digits."""
 
@@ -196,24 +196,36 @@ def _numbered(entries: Sequence[tuple[str, Entry]]) -> list[Written]:
     names: dict[int, str] = {}
     current = common
     for key, entry in entries:
-        count = len(entry.numbers)
-        one, pose = OF_A_CAMERA.fullmatch(key), FROM_THE_FIRST.fullmatch(key)
-        heading = one and one[1] == "cam" and not count
-        if one and (count > 1 or heading):  # with one number it is a coefficient: k1, p2
-            k = NUMBERS.get(one[2]) or int(one[2])
-            names.setdefault(k, entry.name)
-            block = blocks.setdefault(k, {})
-            if heading:  # of Kalibr's: what follows is this camera's
-                current = block
-            else:
-                block.setdefault(one[1], entry)
-        elif pose:
-            blocks.setdefault(int(pose[2]), {}).setdefault(pose[1], entry)
+        number, name = _of_a_camera(key, len(entry.numbers))
+        if number is None:
+            current.setdefault(name, entry)
+            continue
+        block = blocks.setdefault(number, {})
+        if name:
+            block.setdefault(name, entry)
         else:
-            current.setdefault(key, entry)
-    pair: dict[str, Entry] = {key: common.pop(key) for key in ("r", "t") if key in common}
+            current = block
+        if name not in POSE:
+            names.setdefault(number, entry.name)
+    pair: dict[str, Entry] = {key: common.pop(key) for key in POSE if key in common}
     made = [Written(names.get(k, f"{k}"), {**common, **blocks[k]}) for k in sorted(blocks)]
     return [Written(c.name, {**pair, **c.entries}) if k == 1 else c for k, c in enumerate(made)]
+
+
+def _of_a_camera(key: str, count: int) -> tuple[int | None, str]:
+    """The number of the camera that an entry of so many numbers is of, and its name without it.
+
+    The name is '' for a heading of Kalibr's, after which all is of that camera.
+    """
+    if one := OF_A_CAMERA.fullmatch(key):
+        number = NUMBERS.get(one[2]) or int(one[2])
+        if count > 1:  # with one number it is a coefficient: k1, p2
+            return number, one[1]
+        if one[1] == "cam" and not count:
+            return number, ""
+    if further := FROM_THE_FIRST.fullmatch(key):
+        return int(further[2]), further[1]
+    return None, key
 
 
 def _in_turn(entries: Sequence[tuple[str, Entry]]) -> list[Written]:
