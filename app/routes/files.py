@@ -83,7 +83,7 @@ async def paste(request: Request, given: Given, slug: str, room: str, key: str) 
         raise Refusal(422, f"{error_message(session.sim, error)['message']}. Nothing has changed.") from None
     except ValueError as error:
         raise Refusal(422, f"{error} Nothing has changed.") from None
-    return JSONResponse({"said": session.sim.paste.says(found)}, headers=ANYWHERE)
+    return JSONResponse({"said": session.sim.paste.says(session.params, found)}, headers=ANYWHERE)
 
 
 @router.get("/sims/{slug}/s/{room}/{key}/result/{name}")

@@ -12,7 +12,7 @@ from geometry.arrays import Array, norm
 from geometry.camera import Camera
 from geometry.distortion import Distortion
 from sims.camera.params import CameraParams
-from sims.kit.frame import WIDTH
+from sims.kit.scale import Scale
 from sims.kit.types import Pixel
 from sims.kit.world_drawing import Box, Sight, frame, see
 
@@ -54,36 +54,29 @@ class Lens:
         return np.asarray(flat @ K[:2, :2].T + K[:2, 2])
 
 
-def share(p: CameraParams) -> float:
-    """Units of the picture that is shown for a pixel."""
-    return WIDTH / p.width
+def scale(p: CameraParams) -> Scale:
+    """How large the picture's pixels are drawn."""
+    return Scale.of(p.width, p.height)
 
 
 def shown(p: CameraParams, pixel: Pixel) -> Pixel:
     """Where a pixel is in the picture that is shown."""
-    k = share(p)
-    return (pixel[0] + 0.5) * k - 0.5, (pixel[1] + 0.5) * k - 0.5
+    return scale(p).at(pixel)
 
 
 def pixel_at(p: CameraParams, place: tuple[float, ...]) -> Pixel:
     """The inverse of `shown`."""
-    k = share(p)
-    return (place[0] + 0.5) / k - 0.5, (place[1] + 0.5) / k - 0.5
+    return scale(p).pixel(place)
 
 
 def size(p: CameraParams) -> tuple[int, int]:
     """Units of the picture that is shown, across and down."""
-    return WIDTH, max(1, round(p.height * share(p)))
+    return scale(p).width, scale(p).height
 
 
 def scaled(p: CameraParams, camera: Camera) -> Camera:
     """A camera whose pixels are the units of the picture that is shown."""
-    k = share(p)
-    if k == 1.0:
-        return camera
-    (fx, skew, cx), (_, fy, cy), _ = camera.K.tolist()
-    cx, cy = shown(p, (cx, cy))
-    return Camera.from_intrinsics(k * fx, k * fy, cx, cy, k * skew, T_camera_world=camera.T_camera_world)
+    return scale(p).camera(camera)
 
 
 def pictured(p: CameraParams, model: Camera | AffineCamera, lens: Lens | None) -> Sight:

@@ -7,6 +7,7 @@ the point is in one picture, it must be on that line in the other. F says so in 
 from __future__ import annotations
 
 from sims.epipolar import actions, calibration, candidate, plan, ray
+from sims.epipolar.offers import EpipolarOffers
 from sims.epipolar.panes import panes
 from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, OWN, EpipolarParams
 from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
@@ -81,10 +82,15 @@ SIM = Sim(
     },
     paste=Paste(
         OWN, "Calibration of two cameras", "K1, K2, R and T as OpenCV, Kalibr’s camchain, or both ROS files have them",
-        calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".txt"),
+        calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".xml", ".txt"),
+        calibration.says,
     ),
+    offers=EpipolarOffers,
     states={
-        "own pair": {"own": tuple(calibration.read(calibration.EXAMPLE)), "own_left": (300.0, 200.0)},
+        "own pair": {
+            **calibration.changes(EpipolarParams(), calibration.read(calibration.EXAMPLE)),
+            "own_left": (300.0, 200.0), "show_all_lines": True,
+        },
         "converging": {**actions.PRESETS["converging"], "show_all_lines": True, "points": 12},
         "forward": {**actions.PRESETS["forward"], "show_all_lines": True},
         "vertical": {**actions.PRESETS["vertical"], "show_all_lines": True},
@@ -118,11 +124,12 @@ SIM = Sim(
 CONTRACT = Contract(
     parameters=(
         "left right left_pan right_pan focal point points show_plane show_all_lines pick trail candidate own own_left"
-        " own_right"
+        " own_right own_size left_of_text right_of_text"
     ),
     solution=(
         "K P_left P_right F E rank singular_values epipole_left epipole_right epipole_left_pixel"
         " epipole_right_pixel pixel_left pixel_right line_left line_right residual sampson trail candidate own"
+        " K_right size_left size_right"
     ),
     link=(
         "left=-0.5,0,1.2&right=0.5,0.1,1&left_pan=-10&right_pan=12.5&focal=700&point=0.2,3.5,1.1"

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from sims.epipolar import ray
-from sims.epipolar.params import ENOUGH, LAST, LAST_SEED, LEFT, POINT, RIGHT, SIGHT, EpipolarParams, Side
-from sims.epipolar.rig import camera
+from sims.epipolar.eye import camera, eyes
+from sims.epipolar.params import ENOUGH, LAST_SEED, LEFT, POINT, RIGHT, SIGHT, EpipolarParams, Side
 from sims.epipolar.solution import EpipolarSolution
+from sims.kit.scale import Scale
 from sims.kit.sim import Step
 from sims.kit.spelling import plain
 
@@ -24,10 +25,15 @@ GLIDE = 0.9
 
 
 def preset(name: str) -> Any:
-    """An action: both cameras glide to their places, and what is seen of the point is as at the start."""
+    """An action: both cameras glide to their places, and what is seen of the point is as at the start.
+
+    They are the sim's own: a pair of somebody's goes, and the pixel that was picked in its pictures.
+    """
 
     def run(p: EpipolarParams) -> Iterator[Step]:
-        yield Step({**PRESETS[name], "focal": 600.0, "point": POINT, "trail": None, "candidate": None}, GLIDE)
+        pick = None if p.pair else p.pick
+        marks = {"trail": None, "candidate": None, "own": None, "own_size": None, "pick": pick}
+        yield Step({**PRESETS[name], "focal": 600.0, "point": POINT, **marks}, GLIDE)
 
     return run
 
@@ -67,8 +73,9 @@ def hold_pick(side: Side) -> Any:
     """A handle that picks a pixel of one picture."""
 
     def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
-        u, v = (plain(min(max(at, 0.0), last)) for at, last in zip(place, LAST, strict=False))
-        return {"pick": f"{side}:{u},{v}"}
+        eye = eyes(p)[side == "right"]
+        u, v = eye.within(*Scale.of(*eye.size).pixel(place))
+        return {"pick": f"{side}:{plain(u)},{plain(v)}"}
 
     return run
 
@@ -81,9 +88,10 @@ def hold_pixel(side: Side) -> Callable[[EpipolarParams, tuple[float, ...]], Mapp
     """A handle that moves the point parallel to a picture, to where that picture shows it at a pixel."""
 
     def run(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
-        eye = camera(p.left, p.left_pan, p.focal) if side == "left" else camera(p.right, p.right_pan, p.focal)
-        depth = max(float(eye.project(p.point)[1]), NEAREST)
-        x, y, z = (eye.center + depth * eye.back_projection.dot([place[0], place[1], 1.0])).tolist()
+        eye = eyes(p)[side == "right"]
+        held, pixel = camera(eye), Scale.of(*eye.size).pixel(place)
+        depth = max(float(held.project(p.point)[1]), NEAREST)
+        x, y, z = (held.center + depth * held.back_projection.dot([*pixel, 1.0])).tolist()
         return {"point": (x, y, z)}
 
     return run

@@ -12,8 +12,10 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.epipolar import epipolar_residual
 from geometry.triangulation import Status, triangulate_midpoint
-from sims.epipolar.params import CENTER, LAST, EpipolarParams, Pixel, Place
-from sims.epipolar.rig import Pair, camera, existing, right_line
+from sims.epipolar.eye import camera, eyes
+from sims.epipolar.params import EpipolarParams, Pixel, Place
+from sims.epipolar.rig import Pair, existing, right_line
+from sims.kit.scale import Scale
 from sims.kit.sim import Step
 from sims.kit.types import Segment
 
@@ -77,13 +79,9 @@ def candidate(p: EpipolarParams, both: Pair, left: Array, line: Array | None) ->
 
 
 def hold(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
-    """A handle: q′ is put to a pixel."""
-    return {"candidate": within(place[0], place[1])}
-
-
-def within(u: float, v: float) -> Pixel:
-    """The nearest pixel of the picture."""
-    return min(max(u, 0.0), LAST[0]), min(max(v, 0.0), LAST[1])
+    """A handle: q′ is put to where the picture shows a pixel."""
+    right = eyes(p)[1]
+    return {"candidate": right.within(*Scale.of(*right.size).pixel(place))}
 
 
 def hold_off(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
@@ -93,19 +91,21 @@ def hold_off(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
         return {}
     (u, v), (a, b, c) = p.candidate, line.tolist()
     further = place[0] - (a * u + b * v + c)
-    return {"candidate": within(u + further * a, v + further * b)}
+    return {"candidate": eyes(p)[1].within(u + further * a, v + further * b)}
 
 
 def free(p: EpipolarParams) -> Iterator[Step]:
     """An action: q′ leaves p′ and its line, to the side where there is more room."""
-    pixel = existing(camera(p.right, p.right_pan, p.focal).project(p.point)[0])
+    right = eyes(p)[1]
+    pixel = existing(camera(right).project(p.point)[0])
     line = right_line(p)
-    u, v = CENTER if pixel is None else within(*pixel)
+    center = 0.5 * right.size[0], 0.5 * right.size[1]
+    u, v = center if pixel is None else right.within(*pixel)
     a, b = (0.0, 1.0) if line is None else line.tolist()[:2]
-    side = -1.0 if a * (u - CENTER[0]) + b * (v - CENTER[1]) > 0.0 else 1.0
+    side = -1.0 if a * (u - center[0]) + b * (v - center[1]) > 0.0 else 1.0
     yield Step({"candidate": (u, v), "trail": None}, 0.0)
     yield Step(
-        {"candidate": within(u + side * AWAY * a, v + side * AWAY * b)}, FREED,
+        {"candidate": right.within(u + side * AWAY * a, v + side * AWAY * b)}, FREED,
         words="q′ leaves the line of p: the rays of p and q′ no longer meet.",
     )  # fmt: skip
 

@@ -11,11 +11,14 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.camera import Camera
-from sims.epipolar.params import CENTER, Pixel, Place
-from sims.kit.frame import HEIGHT, WIDTH, across, inside
+from sims.epipolar.eye import Eye, orientation
+from sims.epipolar.params import Pixel, Place
+from sims.kit.frame import across
 
 PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""
+DEEPEST = 2.2
+"""Metres that it stands before its camera at most: through long lenses it is smaller."""
 ROOM, LEAST = 1.1, 0.3
 """Metres of baseline from which on there is room; how small cameras may become, as a part of their full size."""
 REACH = 4.0
@@ -62,84 +65,81 @@ def drawn_size(baseline: float) -> float:
     return max(round(20.0 * min(baseline / ROOM, 1.0)) / 20.0, LEAST)
 
 
-def distance(focal: float, size: float) -> float:
+def distance(eye: Eye, size: float) -> float:
     """Metres from a centre to its picture in the scene."""
-    return PICTURE_WIDTH * size * focal / WIDTH
+    return size * min(PICTURE_WIDTH * eye.lens[0] / eye.size[0], DEEPEST)
 
 
 @lru_cache(maxsize=256)
-def corners(focal: float, size: float) -> Array:
+def corners(eye: Eye, size: float) -> Array:
     """Corners of a picture, (4, 3), in its camera's axes."""
-    upright = Camera.from_intrinsics(focal, focal, *CENTER, T_camera_world=np.eye(4))
-    return upright.frustum_corners(WIDTH, HEIGHT, distance(focal, size))
+    upright = Camera.from_intrinsics(*eye.lens, T_camera_world=np.eye(4))
+    return upright.frustum_corners(*eye.size, distance(eye, size))
 
 
-def on_picture(u: float, v: float, focal: float, near: float) -> Place:
+def on_picture(u: float, v: float, eye: Eye, near: float) -> Place:
     """A pixel as a place on the picture in the scene."""
-    return (u - CENTER[0]) / focal * near, (v - CENTER[1]) / focal * near, near
+    fx, fy, cx, cy = eye.lens
+    return (u - cx) / fx * near, (v - cy) / fy * near, near
 
 
-def chord(line: Sequence[float], focal: float, near: float) -> Segment | None:
+def chord(line: Sequence[float], eye: Eye, near: float) -> Segment | None:
     """What a picture holds of a line."""
-    ends = across(line, WIDTH, HEIGHT)
+    ends = across(line, *eye.size)
     if ends is None:
         return None
     (a, b), (c, d) = ends
-    return on_picture(a, b, focal, near), on_picture(c, d, focal, near)
+    return on_picture(a, b, eye, near), on_picture(c, d, eye, near)
 
 
-def chords(lines: Array, focal: float, near: float) -> Segments:
+def chords(lines: Array, eye: Eye, near: float) -> Segments:
     """What a picture holds of lines (n, 3)."""
-    found = [chord(line, focal, near) for line in lines.tolist()]
+    found = [chord(line, eye, near) for line in lines.tolist()]
     return tuple(piece for piece in found if piece is not None)
 
 
 def camera_drawing(
-    center: Place, wxyz: tuple[float, ...], focal: float, size: float, *, pixel: Pixel | None, line: Array | None,
-    picked: Array | None, epipole: Array | None, others: Array, all_lines: Segments,
+    eye: Eye, size: float, *, pixel: Pixel | None, line: Array | None, picked: Array | None, epipole: Array | None,
+    others: Array, all_lines: Segments,
 ) -> CameraDrawing:  # fmt: skip
     """What one camera shows: of the held point its pixel and its line, of the other points what is drawn already."""
-    near = distance(focal, size)
-    piece, chosen = (None if l is None else chord(l.tolist(), focal, near) for l in (line, picked))
-    end = None if epipole is None else _epipole(epipole.tolist(), focal, near)
+    near = distance(eye, size)
+    piece, chosen = (None if l is None else chord(l.tolist(), eye, near) for l in (line, picked))
+    end = None if epipole is None else _epipole(epipole.tolist(), eye, near)
     return CameraDrawing(
-        wxyz=wxyz,
-        center=center,
+        wxyz=orientation(eye.R),
+        center=eye.center,
         size=size,
-        corners=corners(focal, size),
-        pixel=None if pixel is None or not in_picture(*pixel) else on_picture(*pixel, focal, near),
+        corners=corners(eye, size),
+        pixel=None if pixel is None or not eye.shows(*pixel) else on_picture(*pixel, eye, near),
         others=others,
         line=piece,
-        stretch=None if piece is None or end is None else _stretch(piece, end, focal, near),
+        stretch=None if piece is None or end is None else _stretch(piece, end, eye, near),
         all_lines=all_lines,
         picked_line=chosen,
         epipole=end,
     )
 
 
-def in_picture(u: float, v: float) -> bool:
-    """Whether a pixel is within a picture's edges."""
-    return inside(u, v, WIDTH, HEIGHT)
-
-
-def spots(pixels: Array, focal: float, near: float) -> Array:
+def spots(pixels: Array, eye: Eye, near: float) -> Array:
     """Those pixels (n, 2) that are in the picture, as places on it."""
-    inside = (np.abs(pixels - np.array([WIDTH - 1, HEIGHT - 1]) / 2.0) <= np.array([WIDTH, HEIGHT]) / 2.0).all(axis=1)
-    flat = (pixels[inside] - CENTER) * (near / focal)
+    inside = (np.abs(pixels - np.array(eye.last) / 2.0) <= np.array(eye.size) / 2.0).all(axis=1)
+    flat = (pixels[inside] - eye.lens[2:]) * (near / np.array(eye.lens[:2]))
     return np.column_stack([flat, np.full(len(flat), near)])
 
 
-def _epipole(epipole: Sequence[float], focal: float, near: float) -> Place | None:
+def _epipole(epipole: Sequence[float], eye: Eye, near: float) -> Place | None:
     u, v, w = epipole
-    x, y = (u - w * CENTER[0]) * near / focal, (v - w * CENTER[1]) * near / focal
+    fx, fy, cx, cy = eye.lens
+    x, y = (u - w * cx) * near / fx, (v - w * cy) * near / fy
     if math.hypot(x, y, w * near) > REACH * abs(w):
         return None
     return x / w, y / w, near
 
 
-def _stretch(piece: Segment, end: Place, focal: float, near: float) -> Segment | None:
-    u, v = (at * focal / near + c for at, c in zip(end, CENTER, strict=False))
-    if in_picture(u, v):
+def _stretch(piece: Segment, end: Place, eye: Eye, near: float) -> Segment | None:
+    fx, fy, cx, cy = eye.lens
+    if eye.shows(end[0] * fx / near + cx, end[1] * fy / near + cy):
         return None
     return min(piece, key=lambda at: math.dist(at, end)), end
 

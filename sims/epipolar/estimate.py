@@ -36,7 +36,7 @@ class Estimate:
     exact_rms: float | None = None
     noisy_rms_true: float | None = None
     difference: float | None = None
-    """Frobenius norm of the difference of Kᵀ F K from E, both of norm 1: in pixels F's entries don't compare."""
+    """Frobenius norm of the difference of K′ᵀ F K from E, both of norm 1: in pixels F's entries don't compare."""
 
 
 # ---- F from the points
@@ -65,7 +65,7 @@ def estimate(p: EpipolarParams, both: Pair, seen: Views) -> Estimate:
         noisy_rms=_rms(found.F, *noisy),
         exact_rms=_rms(found.F, *exact),
         noisy_rms_true=None if both.F is None else _rms(both.F, *noisy),
-        difference=None if both.E is None else _difference(normalize(both.left.K.T @ found.F @ both.left.K), both.E),
+        difference=None if both.E is None else _difference(normalize(both.right.K.T @ found.F @ both.left.K), both.E),
     )  # fmt: skip
 
 

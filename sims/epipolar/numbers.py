@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sims.epipolar.params import Pixel
-from sims.kit.frame import HEIGHT, WIDTH
 
 SIZE = 26.0
 """Height of the letters' line, in pixels of the picture."""
@@ -48,15 +47,15 @@ class Box:
         return abs(a * self.u + b * self.v + c) < abs(a) * self.half + 0.5 * abs(b) * HIGH
 
 
-def placed(points: Sequence[tuple[str, Pixel]], lines: Sequence[Sequence[float]]) -> list[Box]:
-    """Rectangles of the numbers of points in the picture, one after the other where least is in the way."""
+def placed(points: Sequence[tuple[str, Pixel]], lines: Sequence[Sequence[float]], size: Pixel) -> list[Box]:
+    """Rectangles of the numbers of points in a picture of that size, one after the other where least is in the way."""
     found: list[Box] = []
     spots = [at for _, at in points]
     for text, at in points:
         best, least = None, math.inf
         for rank, (right, down) in enumerate(WAYS):
             box = _beside(text, at, right, down)
-            cost = _cost(box, spots, found, lines) + 0.01 * rank
+            cost = _cost(box, spots, found, lines, size) + 0.01 * rank
             if cost < least:
                 best, least = box, cost
             if cost < CROSSED:
@@ -66,9 +65,9 @@ def placed(points: Sequence[tuple[str, Pixel]], lines: Sequence[Sequence[float]]
     return found
 
 
-def way(at: Pixel, spots: Sequence[Pixel], taken: Sequence[Box], lines: Sequence[Sequence[float]]) -> Way:
+def way(at: Pixel, spots: Sequence[Pixel], taken: Sequence[Box], lines: Sequence[Sequence[float]], size: Pixel) -> Way:
     """To which corner of a held point its letter goes, for there least is in the way."""
-    costs = [(_cost(_letter(at, *each), spots, taken, lines), k) for k, each in enumerate(CORNERS)]
+    costs = [(_cost(_letter(at, *each), spots, taken, lines, size), k) for k, each in enumerate(CORNERS)]
     return CORNERS[min(costs)[1]]
 
 
@@ -82,7 +81,10 @@ def _beside(text: str, at: Pixel, right: int, down: int) -> Box:
     return Box(at[0] + right * (reach + half), at[1] + down * (reach + 0.5 * HIGH), half)
 
 
-def _cost(box: Box, spots: Sequence[Pixel], others: Sequence[Box], lines: Sequence[Sequence[float]]) -> float:
-    inside = box.half <= box.u <= WIDTH - 1 - box.half and 0.5 * HIGH <= box.v <= HEIGHT - 1 - 0.5 * HIGH
+def _cost(
+    box: Box, spots: Sequence[Pixel], others: Sequence[Box], lines: Sequence[Sequence[float]], size: Pixel
+) -> float:
+    right, bottom = size[0] - 1.0, size[1] - 1.0
+    inside = box.half <= box.u <= right - box.half and 0.5 * HIGH <= box.v <= bottom - 0.5 * HIGH
     covered = sum(box.covers(at, DOT) for at in spots) + sum(map(box.meets, others))
     return COVERED * covered + CROSSED * sum(map(box.crossed, lines)) + (0.0 if inside else OUTSIDE)

@@ -5,23 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.camera import Camera
 from geometry.epipolar import epipolar_line_right, epipolar_residual
-from geometry.rotations import axis_angle_to_matrix
+from sims.epipolar.eye import BASELINE
 from sims.epipolar.params import EpipolarParams, Pixel
-from sims.epipolar.rig import Pair, existing_line, related
+from sims.epipolar.rig import Pair, existing_line
 from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, significant, spelled, symbol
-from sims.kit.types import IDENTITY
-
-LEVEL = IDENTITY, IDENTITY
-SHORTEST = 1.0
-"""Pixels that a focal length has at least."""
-Own = tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,18 +36,15 @@ class OwnPair:
     """Pixels of the right pixel from the line."""
 
 
-def own(p: EpipolarParams) -> OwnPair | None:
-    """The pair, if there is one: without focal lengths, or a baseline, there is none."""
-    if p.own is None or min(p.own[:2] + p.own[4:6]) < SHORTEST:
-        return None
-    both = _pair(p.own)
-    if both.F is None or both.E is None:
+def own(p: EpipolarParams, both: Pair) -> OwnPair | None:
+    """The pair, if it is the one that is shown."""
+    if p.pair is None or both.F is None or both.E is None:
         return None
     left, right = np.array(p.own_left), np.array(p.own_right)
     line = existing_line(epipolar_line_right(both.F, left))
     return OwnPair(
         both.F, both.E, both.epipole_left_pixel, both.epipole_right_pixel,
-        math.hypot(*p.own[11:]), math.hypot(*p.own[8:11]), line,
+        math.hypot(*p.pair[11:]), math.hypot(*p.pair[8:11]), line,
         float(epipolar_residual(both.F, left, right)),
         None if line is None else float(line @ [*right, 1.0]),
     )  # fmt: skip
@@ -70,6 +59,7 @@ def readouts(pair: OwnPair | None) -> Iterator[Readout]:
         return
     yield Note(
         f"The right camera is turned by {quantity(pair.angle, '°', 2)}, and {figure(pair.baseline)} away, in T’s unit."
+        f" In the scene that is {quantity(BASELINE, 'm', 1)}: F, lines and epipoles are the same for any length."
         " Pixels are those of your pictures, once free of distortion."
     )
     yield Formula("Fundamental matrix of your pair", symbol("F"), significant(pair.F), copy=spelled(pair.F))
@@ -82,14 +72,3 @@ def readouts(pair: OwnPair | None) -> Iterator[Readout]:
         return
     yield Formula("Line of your left pixel: a, b, c", symbol("l"), row(pair.line_right.tolist()))
     yield Formula("Your right pixel off that line", symbol("d"), mathml(abs(pair.distance), 2), "px")
-
-
-@lru_cache(maxsize=64)
-def _pair(numbers: Own) -> Pair:
-    turn = np.radians(numbers[8:11])
-    angle = float(np.linalg.norm(turn))
-    T = np.eye(4)
-    T[:3, :3] = axis_angle_to_matrix(turn, angle) if angle else np.eye(3)
-    T[:3, 3] = numbers[11:]
-    left = Camera.from_intrinsics(*numbers[:4], T_camera_world=np.eye(4))
-    return related(left, Camera.from_intrinsics(*numbers[4:8], T_camera_world=T), LEVEL)

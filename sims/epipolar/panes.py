@@ -11,15 +11,14 @@ import numpy as np
 from geometry.arrays import Array
 from sims.epipolar import numbers
 from sims.epipolar.candidate import Candidate
-from sims.epipolar.drawing import in_picture
-from sims.epipolar.params import LAST, WORLD, EpipolarParams, Pixel, Place, Side, title
+from sims.epipolar.eye import Eye, camera, eyes
+from sims.epipolar.params import WORLD, EpipolarParams, Pixel, Side, title
 from sims.epipolar.plan import plan
 from sims.epipolar.ray import Trail
-from sims.epipolar.rig import camera
 from sims.epipolar.solution import EpipolarSolution
-from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
+from sims.kit.scale import Scale
 from sims.kit.world_drawing import draw_in_picture
 
 FIRST = "1"
@@ -35,48 +34,71 @@ def panes(p: EpipolarParams, s: EpipolarSolution) -> Sequence[Pane]:
 def _picture(p: EpipolarParams, s: EpipolarSolution, side: Side) -> Pane:
     left = side == "left"
     mark = "" if left else "′"
+    eye = eyes(p)[not left]
+    scale = Scale.of(*eye.size)
     line, lines = (s.line_left, s.lines_left) if left else (s.line_right, s.lines_right)
     pixel, pixels = (s.pixel_left, s.pixels_left) if left else (s.pixel_right, s.pixels_right)
     epipole, at = (s.epipole_left, s.epipole_left_pixel) if left else (s.epipole_right, s.epipole_right_pixel)
-    still = lines[1:].tobytes() if p.show_all_lines and lines is not None else b""
-    rig = (p.left, p.left_pan, p.focal) if left else (p.right, p.right_pan, p.focal)
-    others = _others(side, rig, pixels[1:].tobytes(), still, p.selected)
+    still = scale.lines(lines[1:]).tobytes() if p.show_all_lines and lines is not None else b""
+    others = _others(side, eye, scale.pixels(pixels[1:]).tobytes(), still, p.selected)
     picture = others.picture.copy()
-    _lines(picture, p, s, side, line, lines)
+    _lines(picture, p, s, side, scale)
     if p.noise > 0.0:
-        _measured(picture, s.estimate.measured_left if left else s.estimate.measured_right)
+        _measured(picture, scale.pixels(s.estimate.measured_left if left else s.estimate.measured_right))
+    if s.own is not None and p.typed:
+        _own(picture, scale, p.own_left if left else p.own_right, side)
     if s.trail is not None and not left:
-        _trail(picture, s.trail)
+        _trail(picture, s.trail, scale)
     if epipole is not None:
-        _epipole(picture, epipole, at, f"e{mark}")
+        _epipole(picture, scale.homogeneous(epipole), None if at is None else scale.at(at), f"e{mark}")
     tried = None if left else s.candidate
+    drawn = None if line is None else scale.lines(line)
     if pixel is not None:
-        _held(picture, pixel, side, f"p{mark}", _corner(pixel, line, others), fixed=tried is not None)
+        corner = _corner(scale.at(pixel), drawn, others)
+        _held(picture, pixel, scale, side, f"p{mark}", corner, fixed=tried is not None)
     if tried is not None:
-        _candidate(picture, tried, _corner(tried.pixel, line, others))
+        _candidate(picture, tried, scale, _corner(scale.at(tried.pixel), drawn, others))
     if s.picked is not None and s.picked.side == side:
-        picture.handle(f"pick_{side}", s.picked.pixel, "Picked pixel", "")
+        picture.handle(f"pick_{side}", scale.at(s.picked.pixel), "Picked pixel", "", where=_where(s.picked.pixel))
     return picture.pane(_note(s, pixel, at, mark) if tried is None else _place("q′", tried.pixel))
 
 
-def _trail(picture: Picture, trail: Trail) -> None:
+def _where(pixel: Pixel) -> str:
+    return f"{pixel[0]:.1f}, {pixel[1]:.1f} pixels"
+
+
+def _own(picture: Picture, scale: Scale, pixel: Pixel, side: Side) -> None:
+    """A pixel of the match that was typed."""
+    at = scale.at(pixel)
+    if picture.shows(at):
+        picture.cross(at, side)
+        picture.text((at[0] + 12.0, at[1] + 30.0), "yours", side, fine=True)
+    else:
+        picture.outside((*at, 1.0), side, "yours", title=f"Your {side} pixel")
+
+
+def _trail(picture: Picture, trail: Trail, scale: Scale) -> None:
     """Where p′ has been, with a dot for each metre of depth."""
     if trail.pixels is not None:
-        picture.line(*trail.pixels, "held", width=6, css=' stroke-opacity="0.35"')
-    for u, v in trail.step_pixels.tolist():
-        if in_picture(u, v):
+        a, b = map(scale.at, trail.pixels)
+        picture.line(a, b, "held", width=6, css=' stroke-opacity="0.35"')
+    for u, v in scale.pixels(trail.step_pixels).tolist():
+        if picture.shows((u, v)):
             picture.dot((u, v), "held", 4)
 
 
-def _corner(pixel: Pixel, line: Array | None, others: Others) -> numbers.Way:
-    return numbers.way(pixel, others.spots, others.boxes, () if line is None else (line.tolist(),))
+def _corner(at: Pixel, line: Array | None, others: Others) -> numbers.Way:
+    size = others.picture.width, others.picture.height
+    return numbers.way(at, others.spots, others.boxes, () if line is None else (line.tolist(),), size)
 
 
-def _candidate(picture: Picture, c: Candidate, corner: numbers.Way) -> None:
+def _candidate(picture: Picture, c: Candidate, scale: Scale, corner: numbers.Way) -> None:
     """The free pixel, and how far it is from the line."""
+    at = scale.at(c.pixel)
     if c.foot is not None and c.verdict == "off the line":
-        picture.line(c.pixel, c.foot, "held", width=2, dash="3 3")
-    picture.handle("candidate", c.pixel, "Free pixel q′ in the right picture", "q′", corner=corner)
+        picture.line(at, scale.at(c.foot), "held", width=2, dash="3 3")
+    words, where = "Free pixel q′ in the right picture", _where(c.pixel)
+    picture.handle("candidate", at, words, "q′", where=where, corner=corner)
 
 
 def _place(letter: str, pixel: Pixel) -> str:
@@ -91,36 +113,39 @@ def _note(s: EpipolarSolution, pixel: Pixel | None, epipole: Pixel | None, mark:
     return f"{point}; e{mark} ∞" if epipole is None else point
 
 
-Rig = tuple[Place, float, float]
-"""Centre, pan and focal length of a camera."""
-
-
 @lru_cache(maxsize=64)
-def _world(side: Side, rig: Rig) -> Picture:
+def _world(side: Side, eye: Eye) -> Picture:
     """What a camera sees, with its coordinates: columns run to the right and rows down, from the top left."""
-    picture = Picture(side, f"{side.capitalize()} picture", WIDTH, HEIGHT)
-    draw_in_picture(picture, camera(*rig), WORLD)
+    scale = Scale.of(*eye.size)
+    picture = Picture(side, f"{side.capitalize()} picture", scale.width, scale.height)
+    draw_in_picture(picture, scale.camera(camera(eye)), WORLD)
     picture.pickable(f"pick_{side}", f"{side.capitalize()} picture")
+    u, v = eye.last
     picture.text((8, 26), "0, 0", "ghost", size=22, fine=True)
-    picture.text((WIDTH - 10, 26), f"u {LAST[0]:.0f}", "ghost", anchor="end", size=22, fine=True)
-    picture.text((8, HEIGHT - 12), f"v {LAST[1]:.0f}", "ghost", size=22, fine=True)
+    picture.text((scale.width - 10, 26), f"u {u:.0f}", "ghost", anchor="end", size=22, fine=True)
+    picture.text((8, scale.height - 12), f"v {v:.0f}", "ghost", size=22, fine=True)
     return picture
 
 
-def _lines(
-    picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, line: Array | None, lines: Array | None
-) -> None:
-    other = "right" if side == "left" else "left"
+def _lines(picture: Picture, p: EpipolarParams, s: EpipolarSolution, side: Side, scale: Scale) -> None:
+    left = side == "left"
+    other = "right" if left else "left"
+    line, lines = (s.line_left, s.lines_left) if left else (s.line_right, s.lines_right)
+
+    def draw(each: Array | None, role: str, width: float, dash: str = "", link: str = "") -> None:
+        if each is not None:
+            picture.homogeneous_line(scale.lines(each).tolist(), role, width=width, dash=dash, link=link)
+
     if p.show_all_lines and lines is not None:
-        for k, each in enumerate(lines[1:].tolist(), start=2):
-            picture.homogeneous_line(each, other, width=1, link=f"{k}")
-    if line is not None:
-        picture.homogeneous_line(line.tolist(), other, width=2.5, dash="7 5", link=FIRST)
-    estimated = s.estimate.line_left if side == "left" else s.estimate.line_right
-    if p.noise > 0.0 and estimated is not None:
-        picture.homogeneous_line(estimated.tolist(), "ink", width=1.5, dash="2 4")
-    if s.picked is not None and s.picked.side != side and s.picked.line is not None:
-        picture.homogeneous_line(s.picked.line.tolist(), "held", width=3.5)
+        for k, each in enumerate(lines[1:], start=2):
+            draw(each, other, 1, link=f"{k}")
+    draw(line, other, 2.5, "7 5", FIRST)
+    if p.noise > 0.0:
+        draw(s.estimate.line_left if left else s.estimate.line_right, "ink", 1.5, "2 4")
+    if s.picked is not None and s.picked.side != side:
+        draw(s.picked.line, "held", 3.5)
+    if s.own is not None and p.typed and not left:
+        draw(s.own.line_right, "left", 2, "2 6")
 
 
 class Others(NamedTuple):
@@ -132,19 +157,23 @@ class Others(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _others(side: Side, rig: Rig, pixels: bytes, lines: bytes, selected: int) -> Others:
-    """A picture with the points that stay where they are while the 3D point is moved; `lines` are those shown."""
-    picture = _world(side, rig).copy()
+def _others(side: Side, eye: Eye, pixels: bytes, lines: bytes, selected: int) -> Others:
+    """A picture with the points that stay where they are while the 3D point is moved; `lines` are those shown.
+
+    Pixels and lines are as they are drawn.
+    """
+    picture = _world(side, eye).copy()
     seen = list(enumerate(np.frombuffer(pixels).reshape(-1, 2).tolist(), start=2))
-    inside = [(f"{k}", (u, v)) for k, (u, v) in seen if in_picture(u, v)]
-    boxes = numbers.placed(inside, np.frombuffer(lines).reshape(-1, 3).tolist())
+    inside = [(f"{k}", (u, v)) for k, (u, v) in seen if picture.shows((u, v))]
+    size = picture.width, picture.height
+    boxes = numbers.placed(inside, np.frombuffer(lines).reshape(-1, 3).tolist(), size)
     for (text, _), box in zip(inside, boxes, strict=True):
         if text != f"{selected}":
             at = box.u, box.v + 0.5 * numbers.HIGH
             picture.text(at, text, side, anchor="middle", size=numbers.SIZE, fine=True)
     for k, (u, v) in seen:
         chosen = k == selected
-        if in_picture(u, v):
+        if picture.shows((u, v)):
             picture.point(f"{k}", (u, v), title(k), side, chosen=chosen, label=f"{k}" if chosen else "")
         elif u == u:
             role, words = ("held", f"{k}") if chosen else ("ghost", "")
@@ -155,18 +184,22 @@ def _others(side: Side, rig: Rig, pixels: bytes, lines: bytes, selected: int) ->
 def _measured(picture: Picture, pixels: Array) -> None:
     """Pixels with their noise."""
     for u, v in pixels.tolist():
-        if in_picture(u, v):
+        if picture.shows((u, v)):
             picture.cross((u, v), "ink", 7)
 
 
-def _held(picture: Picture, pixel: Pixel, side: Side, letter: str, corner: numbers.Way, *, fixed: bool) -> None:
+def _held(
+    picture: Picture, pixel: Pixel, scale: Scale, side: Side, letter: str, corner: numbers.Way, *, fixed: bool
+) -> None:
     """The point that can be moved in its picture unless it is fixed, or in which direction it is outside."""
-    if in_picture(*pixel) and fixed:
-        picture.point(FIRST, pixel, title(1), side, label=letter)
-    elif in_picture(*pixel):
-        picture.handle(f"{side}_pixel", pixel, f"3D point in the {side} picture", letter, link=FIRST, corner=corner)
+    at = scale.at(pixel)
+    if picture.shows(at) and fixed:
+        picture.point(FIRST, at, title(1), side, label=letter)
+    elif picture.shows(at):
+        words, where = f"3D point in the {side} picture", _where(pixel)
+        picture.handle(f"{side}_pixel", at, words, letter, where=where, link=FIRST, corner=corner)
     else:
-        picture.outside((*pixel, 1.0), "held", letter, link=FIRST, title=title(1))
+        picture.outside((*at, 1.0), "held", letter, link=FIRST, title=title(1))
 
 
 def _epipole(picture: Picture, epipole: Array, at: Pixel | None, letter: str) -> None:
@@ -175,7 +208,7 @@ def _epipole(picture: Picture, epipole: Array, at: Pixel | None, letter: str) ->
         u, v, _ = epipole.tolist()
         picture.outside((u, v, 0.0), "ink", letter, title=words)
         picture.outside((-u, -v, 0.0), "ink", "", title=words)
-    elif in_picture(*at):
+    elif picture.shows(at):
         picture.dot(at, "ink", 9, hollow=True)
         picture.dot(at, "ink", 3)
         picture.text((at[0] + 16, at[1] + 30), letter)

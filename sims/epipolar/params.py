@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+import math
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import field_validator
+from pydantic import model_validator
 
 from geometry.arrays import Array
 from sims.kit.fields import NumberBox, Slider, Switch, Text, Vector
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params
+from sims.kit.refusals import refusal
 from sims.kit.world import PLACES, TITLES
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
+Size = tuple[int, int]
 Side = Literal["left", "right"]
-LAST: Pixel = (WIDTH - 1.0, HEIGHT - 1.0)
+Own = tuple[float, float, float, float, float, float, float, float, float, float, float, float, float, float]
 CENTER: Pixel = (320.0, 240.0)
-"""Principal point of both cameras."""
+"""Principal point of both of the sim’s own cameras."""
+SMALLEST, LARGEST = 16, 8192
+"""Pixels that a picture has, across and down."""
+SHORTEST, CLOSEST = 1.0, 1e-9
+"""Pixels of focal length, and length of T, that somebody’s pair has at least."""
 LAST_SEED = 9999
 LEFT: Place = (-0.6, 0.0, 1.0)
 RIGHT: Place = (0.6, 0.0, 1.0)
@@ -85,13 +92,21 @@ class EpipolarParams(Params):
         None
     )
     """Depths between which P has slid along the left ray: that piece of it is marked"""
-    candidate: Annotated[Pixel | None, Vector((0.0, 0.0), LAST, step=1, unit="px", title="Free p′", hidden=True)] = None
+    candidate: Annotated[Pixel | None, Vector(0.0, LARGEST - 1.0, step=1, unit="px", title="Free p′", hidden=True)] = (
+        None
+    )
     """A pixel of the right picture, q′, that is tried as the partner of p"""
-    own: Annotated[
-        tuple[float, float, float, float, float, float, float, float, float, float, float, float, float, float] | None,
-        Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True),
-    ] = None
+    own: Annotated[Own | None, Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True)] = None
     """Both calibrations: fx, fy, cx, cy of the left and the right camera, the rotation vector in degrees, and T"""
+    own_size: Annotated[
+        tuple[int, int, int, int] | None,
+        Vector(SMALLEST, LARGEST, step=1, unit="px", title="Sizes of your pictures", hidden=True),
+    ] = None
+    """Width and height of your left and of your right picture; absent: twice as far as their principal points are"""
+    left_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Left camera of the text", group=OWN)] = 1
+    """Which one is the left one, where a text has more than two: the first is 1. Choose before you take the text"""
+    right_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Right camera of the text", group=OWN)] = 2
+    """Which one is the right one, where a text has more than two. Choose before you take the text"""
     own_left: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your left pixel", group=OWN)] = (0.0, 0.0)
     """A pixel of your left picture, free of distortion: u, v"""
     own_right: Annotated[Pixel, Vector(-1e5, 1e5, step=1, unit="px", title="Your right pixel", group=OWN)] = (0.0, 0.0)
@@ -107,14 +122,45 @@ class EpipolarParams(Params):
     ] = None
     """A pixel of one picture; its epipolar line is shown in the other"""
 
-    @field_validator("pick")
-    @classmethod
-    def _in_a_picture(cls, pick: str | None) -> str | None:
-        if pick is not None:
-            _, (u, v) = read_pick(pick)
-            if not (0.0 <= u <= LAST[0] and 0.0 <= v <= LAST[1]):
-                raise ValueError("outside the picture")
-        return pick
+    @property
+    def pair(self) -> Own | None:
+        """Somebody’s pair, if it has focal lengths and a baseline: then its cameras stand in place of the sim’s."""
+        own = self.own
+        if own is None or min(own[:2] + own[4:6]) < SHORTEST or math.hypot(*own[11:]) < CLOSEST:
+            return None
+        return own
+
+    @property
+    def typed(self) -> bool:
+        """Whether somebody typed a match of their pair."""
+        return any((*self.own_left, *self.own_right))
+
+    @property
+    def sizes(self) -> tuple[Size, Size]:
+        """Pixels of the left and of the right picture, across and down."""
+        if self.pair is None:
+            return (WIDTH, HEIGHT), (WIDTH, HEIGHT)
+        if self.own_size is not None:
+            return self.own_size[:2], self.own_size[2:]
+        a, b, c, d = (min(max(round(2.0 * self.pair[k] + 1.0), SMALLEST), LARGEST) for k in (2, 3, 6, 7))
+        return (a, b), (c, d)
+
+    def ranges(self, name: str) -> Sequence[tuple[float, float]]:
+        if name == "candidate":
+            return [(0.0, size - 1.0) for size in self.sizes[1]]
+        return super().ranges(name)
+
+    @model_validator(mode="after")
+    def _in_a_picture(self) -> Self:
+        try:
+            side, (u, v) = read_pick(self.pick or "left:0,0")
+        except ValueError:
+            side, u, v = "left", -1.0, -1.0
+        width, height = self.sizes[side == "right"]
+        if not (0.0 <= u < width and 0.0 <= v < height):
+            range_ = f"u from 0 to {width - 1} and v from 0 to {height - 1}"
+            raise refusal(["pick"], f"left:u,v or right:u,v, with {range_}")
+        return self
 
 
 def title(number: int) -> str:

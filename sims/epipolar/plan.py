@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any
 
 from sims.epipolar.drawing import CameraDrawing, distance
+from sims.epipolar.eye import Eye, eyes
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
@@ -37,13 +37,17 @@ def hold(name: str) -> Callable[[EpipolarParams, tuple[float, ...]], Mapping[str
 def plan(p: EpipolarParams, s: EpipolarSolution) -> Pane:
     """The finished plan."""
     picture = _others(p.points - 1, p.selected).copy()
-    _camera(picture, p, "left", s.drawn.left, p.left_pan)
-    _camera(picture, p, "right", s.drawn.right, p.right_pan)
-    picture.line(at(*p.left[:2]), at(*p.right[:2]), "ink", width=2.5)
-    held = ("left", p.left, "Left camera"), ("right", p.right, "Right camera"), ("point", p.point, title(1))
+    left, right = eyes(p)
+    _camera(picture, p, "left", left, s.drawn.left)
+    _camera(picture, p, "right", right, s.drawn.right)
+    picture.line(at(*left.center[:2]), at(*right.center[:2]), "ink", width=2.5)
+    cameras = ("left", left.center, "Left camera"), ("right", right.center, "Right camera")
+    held = *cameras, ("point", p.point, title(1))
     for (name, place, words), letter, link in zip(held, "LRP", ("", "", "1"), strict=True):
         spot = at(*place[:2])
-        if 0.0 <= spot[0] < WIDTH and 0.0 <= spot[1] < HEIGHT:
+        if name != "point" and p.pair is not None:  # they stand as they were calibrated
+            picture.text((spot[0] + 12.0, spot[1] + 26.0), letter)
+        elif 0.0 <= spot[0] < WIDTH and 0.0 <= spot[1] < HEIGHT:
             where = f"X {figure(place[0], 2)}, Y {figure(place[1], 2)} metres"
             picture.handle(f"plan_{name}", spot, words, letter, where=where, link=link)
     return picture.pane("grid of 1\u2009m", wide=True)
@@ -69,23 +73,21 @@ def _others(count: int, selected: int) -> Picture:
     return picture
 
 
-def _camera(picture: Picture, p: EpipolarParams, side: Side, drawn: CameraDrawing, pan: float) -> None:
+def _camera(picture: Picture, p: EpipolarParams, side: Side, eye: Eye, drawn: CameraDrawing) -> None:
     """What the camera sees, its picture, the ray to the point, and its epipole where the baseline meets the picture."""
-    cos, sin = math.cos(math.radians(pan)), math.sin(math.radians(pan))
-    near, (x, y, _) = distance(p.focal, drawn.size), drawn.center
+    R, near, (x, y, _) = eye.R, distance(eye, drawn.size), eye.center
 
-    def seen(right: float, forward: float) -> Pixel:
-        return at(x + cos * right - sin * forward, y + sin * right + cos * forward)
+    def seen(right: float, forward: float, down: float = 0.0) -> Pixel:
+        return at(x + R[0] * right + R[1] * down + R[2] * forward, y + R[3] * right + R[4] * down + R[5] * forward)
 
-    edge = drawn.corners.item(1, 0) / near
-    picture.line(seen(0, 0), seen(-9 * edge, 9), side, width=0.8)
+    left, edge = (drawn.corners.item(k, 0) / near for k in (0, 1))
+    picture.line(seen(0, 0), seen(9 * left, 9), side, width=0.8)
     picture.line(seen(0, 0), seen(9 * edge, 9), side, width=0.8)
-    picture.line(seen(-edge * near, near), seen(edge * near, near), side, width=3)
+    picture.line(seen(left * near, near), seen(edge * near, near), side, width=3)
     picture.line(seen(0, 0), at(*p.point[:2]), side, width=2)
     if drawn.epipole is not None:
-        right, _, _ = drawn.epipole
-        picture.line(
-            seen(edge * near if right > 0 else -edge * near, near), seen(right, near), side, width=1, dash="4 4"
-        )
-        picture.line(seen(0, 0), seen(right, near), "ink", width=1)
-        picture.dot(seen(right, near), "ink", 5)
+        right, down, _ = drawn.epipole
+        end = seen(right, near, down)
+        picture.line(seen(edge * near if right > 0 else left * near, near), end, side, width=1, dash="4 4")
+        picture.line(seen(0, 0), end, "ink", width=1)
+        picture.dot(end, "ink", 5)

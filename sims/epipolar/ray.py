@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Array
+from sims.epipolar.eye import camera, eyes
 from sims.epipolar.params import EpipolarParams, Pixel, Place
-from sims.epipolar.rig import Pair, camera
+from sims.epipolar.rig import Pair
 from sims.kit.sim import Step
 from sims.kit.types import Segment
 
@@ -48,7 +49,7 @@ def trail(p: EpipolarParams, both: Pair, depth: float) -> Trail | None:
     if p.trail is None or depth < LEAST:
         return None
     near, far = min(*p.trail, depth), max(*p.trail, depth)
-    start, along = np.array(p.left), _direction(p, depth)
+    start, along = both.left.center, _direction(p, depth)
     seen = _before(both, start, along, near, far)
     whole = range(math.ceil(near), math.floor(far) + 1)
     places = start + np.array([near, far, *(seen or (near, far)), *whole])[:, None] * along
@@ -60,14 +61,14 @@ def trail(p: EpipolarParams, both: Pair, depth: float) -> Trail | None:
 
 def depth_of(p: EpipolarParams) -> float:
     """Metres that P is before the left camera, along its axis."""
-    return float(camera(p.left, p.left_pan, p.focal).project(p.point)[1])
+    return float(camera(eyes(p)[0]).project(p.point)[1])
 
 
 def reached(p: EpipolarParams, depth: float) -> tuple[float, Place]:
     """The nearest depth to a wanted one at which P may be on its left ray, and where it is then."""
     along = _direction(p, depth_of(p))
     depth = min(max(depth, NEAREST), *_limits(p, along))
-    return depth, _place(np.array(p.left) + depth * along)
+    return depth, _place(np.array(eyes(p)[0].center) + depth * along)
 
 
 def hold(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
@@ -102,8 +103,8 @@ def _swept(p: EpipolarParams) -> tuple[float, float]:
     now = depth_of(p)
     along = _direction(p, now)
     near, far = SWEPT
-    right = camera(p.right, p.right_pan, p.focal)
-    first, step = float(right.R[2] @ p.left + right.t[2]), float(right.R[2] @ along)
+    left, right = eyes(p)[0], camera(eyes(p)[1])
+    first, step = float(right.R[2] @ left.center + right.t[2]), float(right.R[2] @ along)
     if step > 0.0:
         near = max(near, (AHEAD - first) / step)
     return min(near, now), max(far, now)
@@ -111,7 +112,7 @@ def _swept(p: EpipolarParams) -> tuple[float, float]:
 
 def _direction(p: EpipolarParams, depth: float) -> Array:
     """Along the ray of p in the world, one metre deeper."""
-    return np.asarray((np.array(p.point) - np.array(p.left)) / depth)
+    return np.asarray((np.array(p.point) - eyes(p)[0].center) / depth)
 
 
 def _limits(p: EpipolarParams, along: Array) -> list[float]:
@@ -120,7 +121,7 @@ def _limits(p: EpipolarParams, along: Array) -> list[float]:
     bounds = kind.ranges(p.point, kind.bounds)
     found = [
         ((high if step > 0.0 else low) - start) / step
-        for start, step, (low, high) in zip(p.left, along.tolist(), bounds, strict=True)
+        for start, step, (low, high) in zip(eyes(p)[0].center, along.tolist(), bounds, strict=True)
         if step
     ]
     return [FARTHEST, *found]

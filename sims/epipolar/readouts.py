@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from sims.epipolar.candidate import Candidate
-from sims.epipolar.drawing import in_picture
 from sims.epipolar.estimate import readouts as estimate_readouts
 from sims.epipolar.own import readouts as own_readouts
-from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel
+from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel, Size
 from sims.epipolar.solution import EpipolarSolution
+from sims.kit.frame import inside
 from sims.kit.readout import (
     Fold,
     Formula,
@@ -44,6 +44,11 @@ def unseen(s: EpipolarSolution) -> str:
     return "either camera" if len(sides) == 2 else f"the {sides[0]} camera" if sides else ""
 
 
+def baseline(s: EpipolarSolution) -> str:
+    """How far the cameras are apart; those of somebody's pair in the unit of their T."""
+    return f"baseline {quantity(s.baseline, 'm', 2) if s.own is None else f'{figure(s.own.baseline)} in T’s unit'}"
+
+
 def short_trouble(s: EpipolarSolution) -> str | None:
     """What doesn't exist, in a few words."""
     if s.F is None:
@@ -61,7 +66,7 @@ def caption(p: EpipolarParams, s: EpipolarSolution) -> str:
         return judged(s.candidate)
     if s.picked is not None:
         return f"The pixel that you picked in the {s.picked.side} picture lies on a ray, which is a line in the other."
-    if s.epipole_left_pixel is not None and in_picture(*s.epipole_left_pixel):
+    if s.epipole_left_pixel is not None and inside(*s.epipole_left_pixel, *s.size_left):
         return "All lines run through the epipole: there each camera would see the other one."
     if s.trail is not None:
         return "P slid along one ray: p stayed where it is, and p′ ran along its line."
@@ -82,7 +87,7 @@ def judged(c: Candidate) -> str:
             return "On the line of p, but the two rays are parallel: they meet at infinity."
         case "behind a camera":
             return "On the line of p, but the two rays part: they would meet behind a camera."
-    return "p has no line in the right picture, so nothing can be said of q′."
+    return "There is no line of p in the right picture, so nothing can be said of q′."
 
 
 def readouts(p: EpipolarParams, s: EpipolarSolution) -> Iterator[Readout]:
@@ -130,17 +135,17 @@ def _points(p: EpipolarParams, s: EpipolarSolution) -> Table:
     """Pixels of all points that are shown."""
     rows: list[tuple[str, ...]] = [("point", "u", "v", "u′", "v′")]
     for name, left, right in zip(("P", *NUMBERS[1:]), s.pixels_left.tolist(), s.pixels_right.tolist(), strict=False):
-        rows.append((name, *_cells(*left), *_cells(*right)))
+        rows.append((name, *_cells(*left, s.size_left), *_cells(*right, s.size_right)))
     words = "Points: left and right pixel; in brackets what is outside the picture"
     return Table(words, rows, NUMBERS, f"{p.selected}")
 
 
 @lru_cache(maxsize=256)
-def _cells(u: float, v: float) -> tuple[str, str]:
+def _cells(u: float, v: float, size: Size) -> tuple[str, str]:
     if u != u:
         return "–", "–"
     across, down = figure(u, 1), figure(v, 1)
-    return (across, down) if in_picture(u, v) else (f"({across})", f"({down})")
+    return (across, down) if inside(u, v, *size) else (f"({across})", f"({down})")
 
 
 def _status(s: EpipolarSolution) -> Iterator[Note]:
@@ -153,8 +158,8 @@ def _status(s: EpipolarSolution) -> Iterator[Note]:
         yield Note(f"P isn’t in front of {where}, and has no pixel there.", "warn")
     if s.on_baseline:
         yield Note("P is on the line through both centres: every plane through it would do, so P has no line.", "warn")
-    for side, pixel in (("left", s.pixel_left), ("right", s.pixel_right)):
-        if pixel is not None and not in_picture(*pixel):
+    for side, pixel, size in (("left", s.pixel_left, s.size_left), ("right", s.pixel_right, s.size_right)):
+        if pixel is not None and not inside(*pixel, *size):
             yield Note(f"P is outside the {side} picture.", "near")
 
 
@@ -225,7 +230,7 @@ def describe(p: EpipolarParams, s: EpipolarSolution) -> str:
     if s.candidate is not None:
         parts.append(judged(s.candidate).rstrip("."))
     shown = "1 point" if p.points == 1 else f"{p.points} points"
-    return "; ".join([*parts, f"baseline {quantity(s.baseline, 'm', 2)}", shown]) + "."
+    return "; ".join([*parts, baseline(s), shown]) + "."
 
 
 def epipole_in_words(pixel: Pixel | None) -> str:

@@ -1,4 +1,4 @@
-"""Both cameras, what follows from them alone, and how they see the points that stay where they are."""
+"""What follows from both cameras alone, and how they see the points that stay where they are."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry import GeometryError, quaternion
+from geometry import GeometryError
 from geometry.arrays import Array
-from geometry.camera import R_WORLD_LEVEL, Camera
+from geometry.camera import Camera
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipole_pixel, epipoles, essential, normalize
-from geometry.rotations import axis_rotation
 from sims.epipolar.drawing import Segments, chords, distance, drawn_size, spots
-from sims.epipolar.params import CENTER, OTHERS, EpipolarParams, Pixel, Place
-from sims.kit.types import Quaternion
+from sims.epipolar.eye import Eye, camera, eyes
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel
 
 RANK_TOLERANCE = 1e-12
 
@@ -26,8 +25,6 @@ class Pair:
 
     left: Camera
     right: Camera
-    wxyz: tuple[Quaternion, Quaternion]
-    """Orientations of the left and the right camera, in the world."""
     F: Array | None = None
     E: Array | None = None
     rank: int | None = None
@@ -48,50 +45,27 @@ class Views:
     lines_right: Array | None
 
 
-# ---- the cameras
 @lru_cache(maxsize=256)
-def camera(center: Place, pan: float, focal: float) -> Camera:
-    """A level camera at a place in metres, turned by degrees about the vertical."""
-    R = (axis_rotation("z", math.radians(pan)) @ R_WORLD_LEVEL).T
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, -R @ center
-    return Camera.from_intrinsics(focal, focal, *CENTER, T_camera_world=T)
-
-
-@lru_cache(maxsize=256)
-def _orientation(pan: float) -> Quaternion:
-    """The axes of a level camera that is turned by degrees about the vertical, in the world."""
-    turned = axis_rotation("z", math.radians(pan)) @ R_WORLD_LEVEL
-    w, x, y, z = quaternion.from_matrix(turned).tolist()
-    return w, x, y, z
-
-
-@lru_cache(maxsize=256)
-def pair(left: Place, right: Place, left_pan: float, right_pan: float, focal: float) -> Pair:
+def pair(left: Eye, right: Eye) -> Pair:
     """Both cameras, and their epipolar geometry if they have any."""
-    first, second = camera(left, left_pan, focal), camera(right, right_pan, focal)
-    return related(first, second, (_orientation(left_pan), _orientation(right_pan)))
-
-
-def related(first: Camera, second: Camera, turned: tuple[Quaternion, Quaternion]) -> Pair:
-    """Two cameras with their orientations, and their epipolar geometry if they have any."""
+    first, second = camera(left), camera(right)
     try:
         E = normalize(essential(first, second))
     except GeometryError:  # both at one place
-        return Pair(first, second, turned)
+        return Pair(first, second)
     F = normalize(second.K_inverse.T @ E @ first.K_inverse)
     values = np.asarray(np.linalg.svd(F, compute_uv=False), dtype=np.float64)
     ends = epipoles(F)
     return Pair(
-        first, second, turned, F, E, int((values > RANK_TOLERANCE * values[0]).sum()), values, *ends,
+        first, second, F, E, int((values > RANK_TOLERANCE * values[0]).sum()), values, *ends,
         *(existing(epipole_pixel(end)) for end in ends),
     )  # fmt: skip
 
 
 @lru_cache(maxsize=256)
-def views(left: Place, right: Place, left_pan: float, right_pan: float, focal: float, count: int) -> Views:
+def views(left: Eye, right: Eye, count: int) -> Views:
     """The first of the points that stay where they are."""
-    both = pair(left, right, left_pan, right_pan, focal)
+    both = pair(left, right)
     u, v = (c.project(OTHERS[:count])[0] for c in (both.left, both.right))
     if both.F is None:
         return Views(u, v, None, None)
@@ -99,22 +73,22 @@ def views(left: Place, right: Place, left_pan: float, right_pan: float, focal: f
 
 
 @lru_cache(maxsize=256)
-def other_drawings(
-    left: Place, right: Place, left_pan: float, right_pan: float, focal: float, count: int, lines: bool
-) -> tuple[tuple[Array, Segments], ...]:
+def other_drawings(left: Eye, right: Eye, count: int, lines: bool) -> tuple[tuple[Array, Segments], ...]:
     """What lies on the left and the right picture in the scene of the points that stay where they are."""
-    seen = views(left, right, left_pan, right_pan, focal, count)
-    near = distance(focal, drawn_size(math.dist(left, right)))
-    sides = (seen.pixels_left, seen.lines_left), (seen.pixels_right, seen.lines_right)
+    seen, size = views(left, right, count), drawn_size(math.dist(left.center, right.center))
+    sides = (left, seen.pixels_left, seen.lines_left), (right, seen.pixels_right, seen.lines_right)
     return tuple(
-        (spots(pixels, focal, near), chords(all_lines, focal, near) if lines and all_lines is not None else ())
-        for pixels, all_lines in sides
+        (
+            spots(pixels, eye, distance(eye, size)),
+            chords(all_lines, eye, distance(eye, size)) if lines and all_lines is not None else (),
+        )
+        for eye, pixels, all_lines in sides
     )
 
 
 def right_line(p: EpipolarParams) -> Array | None:
     """The line of p in the right picture; None where there is none."""
-    both = pair(p.left, p.right, p.left_pan, p.right_pan, p.focal)
+    both = pair(*eyes(p))
     left, _ = both.left.project(p.point)
     return None if both.F is None else existing_line(epipolar_line_right(both.F, left))
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from sims.epipolar.candidate import Candidate
 from sims.epipolar.drawing import CameraDrawing, Segment
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import OTHERS, WORLD, EpipolarParams, Place, Side
 from sims.epipolar.ray import Trail
-from sims.epipolar.readouts import short_trouble
+from sims.epipolar.readouts import baseline, short_trouble
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import quantity
 from sims.kit.scene.camera_figure import CameraFigure
@@ -25,7 +26,8 @@ OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 def seen(p: EpipolarParams, s: EpipolarSolution) -> list[Place]:
     """What must be in sight; not P while it slides along its ray, or the view would step back and forth."""
-    return [p.left, p.right] if s.trail is not None else [p.left, p.right, p.point]
+    centers = [s.drawn.left.center, s.drawn.right.center]
+    return centers if s.trail is not None else [*centers, p.point]
 
 
 SIDE_BY_SIDE = View((4.2, -3.4, 3.9), (0.0, 2.6, 0.9), 3.2)
@@ -35,7 +37,7 @@ BEHIND_EACH_OTHER = View((-4.5, -3.2, 4.4), (0.0, 2.5, 0.8), 3.5)
 
 def view_of(p: EpipolarParams) -> View:
     """From where both pictures and the epipolar plane are seen, as the cameras stand."""
-    across, along, up = (abs(a - b) for a, b in zip(p.left, p.right, strict=True))
+    across, along, up = (abs(a - b) for a, b in zip(*(eye.center for eye in eyes(p)), strict=True))
     return BEHIND_EACH_OTHER if along > max(across, up) else SIDE_BY_SIDE
 
 
@@ -76,24 +78,27 @@ class EpipolarScene:
         for drawn, camera, grip in zip((s.drawn.left, s.drawn.right), self.cameras, self.grips, strict=True):
             camera.draw(drawn)
             grip.pose(position=drawn.center)
-        self._baseline(p, s)
+            grip.show(p.pair is None)  # somebody's cameras stand as they were calibrated
+        self.centers = s.drawn.left.center, s.drawn.right.center
+        self._baseline(s)
         self._points(p)
         self._linked(p, s)
-        self.rays.draw(((p.left, p.point), (p.right, p.point)))
+        self.rays.draw([(center, p.point) for center in self.centers])
         self.trail.draw(s.trail)
         self.candidate.draw(s.candidate)
         self.plane.vertices(s.drawn.plane if p.show_plane else None)
         self.pick_ray.stroke(s.drawn.picked_ray)
         trouble = short_trouble(s)
         self.warning.say(trouble and f"⚠ {trouble}")
-        x, y, z = p.point if s.F is not None else p.left
+        x, y, z = p.point if s.F is not None else self.centers[0]
         self.warning.pose(position=(x, y, z + 0.55))
 
-    def _baseline(self, p: EpipolarParams, s: EpipolarSolution) -> None:
-        self.baseline.stroke((p.left, p.right))
-        x, y, _ = (0.5 * (a + b) for a, b in zip(p.left, p.right, strict=True))
-        self.middle.pose(position=(x, y, min(p.left[2], p.right[2])))  # below both, where it hides neither
-        self.baseline_label.text(f"baseline {quantity(s.baseline, 'm', 2)}")
+    def _baseline(self, s: EpipolarSolution) -> None:
+        left, right = self.centers
+        self.baseline.stroke((left, right))
+        x, y, _ = (0.5 * (a + b) for a, b in zip(left, right, strict=True))
+        self.middle.pose(position=(x, y, min(left[2], right[2])))  # below both, where it hides neither
+        self.baseline_label.text(baseline(s))
 
     def _points(self, p: EpipolarParams) -> None:
         self.held.pose(position=p.point)
@@ -102,7 +107,6 @@ class EpipolarScene:
             ball.show(k <= p.points)
 
     def _linked(self, p: EpipolarParams, s: EpipolarSolution) -> None:
-        self.centers = p.left, p.right
         self.places = {f"{k}": (x, y, z) for k, (x, y, z) in enumerate(s.points.tolist(), start=1)}
         self.selected.draw(self.places.get(f"{p.selected}") if p.selected > 1 else None, self.centers)
         self.selected_label.text(f"point {p.selected}")

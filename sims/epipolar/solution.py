@@ -12,8 +12,9 @@ from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipolar_
 from sims.epipolar.candidate import Candidate, candidate
 from sims.epipolar.drawing import Drawing, Segment, camera_drawing, drawn_size, plane
 from sims.epipolar.estimate import Estimate, estimate
+from sims.epipolar.eye import Eye, eyes
 from sims.epipolar.own import OwnPair, own
-from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, Size, read_pick
 from sims.epipolar.ray import Trail, trail
 from sims.epipolar.rig import Pair, Views, existing, existing_line, other_drawings, pair, views
 
@@ -38,6 +39,8 @@ class EpipolarSolution:
     """What doesn't exist is None. Pixels and lines without a number are those of the 3D point."""
 
     K: Array
+    """The left camera's; the sim's own two have the same."""
+    K_right: Array
     P_left: Array
     P_right: Array
     F: Array | None
@@ -54,7 +57,10 @@ class EpipolarSolution:
     line_right: Array | None
     residual: float | None
     sampson: float | None
+    size_left: Size
+    size_right: Size
     baseline: float
+    """Metres, in the scene."""
     points: Array
     pixels_left: Array
     pixels_right: Array
@@ -73,11 +79,11 @@ class EpipolarSolution:
 
 def solve(p: EpipolarParams) -> EpipolarSolution:
     """All the mathematics of a state."""
-    rig = p.left, p.right, p.left_pan, p.right_pan, p.focal
+    rig = eyes(p)
     both, others = pair(*rig), views(*rig, p.points - 1)
     (left, depth_left), (right, depth_right) = (camera.project(p.point) for camera in (both.left, both.right))
     pixel_left, pixel_right = existing(left), existing(right)
-    aligned = both.F is not None and _aligned(p)
+    aligned = both.F is not None and _aligned(p.point, *rig)
     lines: tuple[Array | None, Array | None] = None, None
     if both.F is not None and not aligned:
         lines = existing_line(epipolar_line_left(both.F, right)), existing_line(epipolar_line_right(both.F, left))
@@ -86,6 +92,7 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
     picked = None if p.pick is None else _picked(both, p.pick)
     return EpipolarSolution(
         K=both.left.K,
+        K_right=both.right.K,
         P_left=both.left.P,
         P_right=both.right.P,
         F=both.F,
@@ -102,7 +109,9 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
         line_right=lines[1],
         residual=None if match is None else float(epipolar_residual(*match)),
         sampson=None if match is None else _number(sampson_distance(*match)),
-        baseline=math.dist(p.left, p.right),
+        size_left=rig[0].size,
+        size_right=rig[1].size,
+        baseline=math.dist(rig[0].center, rig[1].center),
         points=_world_points(p.point, p.points),
         pixels_left=together.pixels_left,
         pixels_right=together.pixels_right,
@@ -112,31 +121,31 @@ def solve(p: EpipolarParams) -> EpipolarSolution:
         depth_right=float(depth_right),
         on_baseline=aligned,
         picked=picked,
-        own=own(p),
+        own=own(p, both),
         trail=trail(p, both, float(depth_left)),
         candidate=candidate(p, both, left, lines[1]),
         estimate=estimate(p, both, together),
-        drawn=_drawn(p, both, (pixel_left, pixel_right), lines, picked, aligned),
+        drawn=_drawn(p, rig, both, (pixel_left, pixel_right), lines, picked, aligned),
     )
 
 
 def _drawn(
-    p: EpipolarParams, both: Pair, pixels: tuple[Pixel | None, Pixel | None], lines: tuple[Array | None, Array | None],
-    picked: Picked | None, aligned: bool,
+    p: EpipolarParams, rig: tuple[Eye, Eye], both: Pair, pixels: tuple[Pixel | None, Pixel | None],
+    lines: tuple[Array | None, Array | None], picked: Picked | None, aligned: bool,
 ) -> Drawing:  # fmt: skip
-    size = drawn_size(math.dist(p.left, p.right))
-    still = other_drawings(p.left, p.right, p.left_pan, p.right_pan, p.focal, p.points - 1, p.show_all_lines)
+    left, right = rig
+    size = drawn_size(math.dist(left.center, right.center))
+    still = other_drawings(left, right, p.points - 1, p.show_all_lines)
     eyes = [
         camera_drawing(
-            center, wxyz, p.focal, size, pixel=pixel, line=line, epipole=epipole, others=others, all_lines=chords,
+            eye, size, pixel=pixel, line=line, epipole=epipole, others=others, all_lines=chords,
             picked=picked.line if picked is not None and picked.side != side else None,
         )
-        for side, center, wxyz, pixel, line, epipole, (others, chords) in zip(
-            ("left", "right"), (p.left, p.right), both.wxyz, pixels, lines,
-            (both.epipole_left, both.epipole_right), still, strict=True,
+        for side, eye, pixel, line, epipole, (others, chords) in zip(
+            ("left", "right"), rig, pixels, lines, (both.epipole_left, both.epipole_right), still, strict=True,
         )
     ]  # fmt: skip
-    sheet = None if both.F is None or aligned else plane(p.left, p.right, p.point)
+    sheet = None if both.F is None or aligned else plane(left.center, right.center, p.point)
     return Drawing(eyes[0], eyes[1], sheet, None if picked is None else picked.ray)
 
 
@@ -164,9 +173,11 @@ def _world_points(point: Place, count: int) -> Array:
     return np.concatenate([[point], OTHERS[: count - 1]])
 
 
-def _aligned(p: EpipolarParams) -> bool:
+def _aligned(point: Place, left: Eye, right: Eye) -> bool:
     """Whether the point is on the line through both centres: then there is no single epipolar plane."""
-    (ax, ay, az), (bx, by, bz) = ([a - b for a, b in zip(end, p.left, strict=True)] for end in (p.point, p.right))
+    (ax, ay, az), (bx, by, bz) = (
+        [a - b for a, b in zip(end, left.center, strict=True)] for end in (point, right.center)
+    )
     crossed = math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
     return crossed <= EXACT * math.hypot(ax, ay, az) * math.hypot(bx, by, bz)
 

@@ -48,7 +48,7 @@ SIM = Sim(
         example='Rotation.from_euler("ZYX", [30, 20, 10], degrees=True)',
         read=recognise.read,
         changes=take,
-        says=lambda found: f"Read as {found['what']}. It is there in all forms under “{FORMS}”.",
+        says=lambda _, found: f"Read as {found['what']}. It is there in all forms under “{FORMS}”.",
     ),
     actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),
     states={

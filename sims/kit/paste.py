@@ -32,8 +32,8 @@ class Paste(Generic[P]):
     """What of a state changes by what was read, with lists where `read` gave tuples. Raises ValueError in words too."""
     endings: tuple[str, ...] = ()
     """How files end that such a text may come from."""
-    says: Callable[[Any], str] = lambda _: "Taken."
-    """What was understood, in a sentence."""
+    says: Callable[[P, Any], str] = lambda _, __: "Taken."
+    """What was understood, in a sentence: of the state that shows it, and what was read."""
 
     def found(self, text: str) -> Any:
         """What `read` makes of a text, in a child. Raises ValueError in words."""

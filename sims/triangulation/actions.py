@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from sims.kit.scale import Scale
 from sims.triangulation.depth_plot import within
 from sims.triangulation.holding import apart, in_sight
 from sims.triangulation.params import FARTHEST, LAST_SEED, TriangulationParams
 from sims.triangulation.rig import rig
-from sims.triangulation.scale import Scale
 from sims.triangulation.solution import TriangulationSolution, measured, pair
 
 
@@ -30,12 +30,12 @@ def hold_depth(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, An
 
 def hold_left(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The left pixel."""
-    return {"left_uv": Scale.of(p).pixel(place)}
+    return {"left_uv": Scale.of(p.width, p.height).pixel(place)}
 
 
 def hold_right(p: TriangulationParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The right pixel."""
-    return {"right_uv": Scale.of(p).pixel(place)}
+    return {"right_uv": Scale.of(p.width, p.height).pixel(place)}
 
 
 def held_point(p: TriangulationParams, s: TriangulationSolution) -> tuple[float, float, float] | None:

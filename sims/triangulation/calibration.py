@@ -6,10 +6,13 @@ A rig is a dict of the parameters that describe it, in metres and pixels.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from geometry.arrays import Array
+from sims.kit.calibration import cameras, poses
 from sims.triangulation.holding import held_point
 from sims.triangulation.params import OF_CURVE, TriangulationParams
 
@@ -30,28 +33,26 @@ doffs=209.059
 baseline=176.252
 width=2880
 height=1988"""
-KITTI_PAIRS = (
-    ("P_rect_00", "P_rect_01", "S_rect_00"),
-    ("P_rect_02", "P_rect_03", "S_rect_02"),
-    ("P0", "P1", ""),
-    ("P2", "P3", ""),
-)
-"""Names of both projection matrices, and of the size of the pictures where a file has it."""
 DECIMALS = 9
 """What metres and pixels are rounded to: more digits are there by arithmetic alone."""
 ALIKE = 1e-6
 """By what part numbers may differ that are the same for both cameras."""
+TURNED = 1e-4
+"""The same of the entries of a rotation that turns nothing."""
 
 
 def read(text: str) -> dict[str, float]:
-    """The rig of a calibration file as Middlebury or KITTI have it. Raises ValueError in words."""
-    entries = dict(re.findall(r"^\s*(\w+)\s*[=:]\s*(.+?)\s*$", text, re.MULTILINE))
-    if {"cam0", "cam1", "baseline"} <= entries.keys():
-        return _middlebury(entries)
-    for left, right, size in KITTI_PAIRS:
-        if {left, right} <= entries.keys():
-            return _kitti(_numbers(left, entries[left], 12), _numbers(right, entries[right], 12), entries.get(size, ""))
-    raise ValueError("No calibration was found: there should be cam0, cam1 and baseline, or P0 and P1.")
+    """The rig of the first two cameras of a text. Raises ValueError in words."""
+    pair = cameras(text)[:2]
+    matrices = [K for each in pair if (K := each.K) is not None]
+    if len(matrices) < 2:
+        raise ValueError("No calibration was found: there should be cam0, cam1 and baseline, or P0 and P1.")
+    left, right = poses(pair)
+    size = pair[0].size or {name: KITTI[name] for name in ("width", "height") if pair[0].first(("p",))}
+    if len(size) < 2:
+        raise ValueError("The text doesn’t say how large the pictures are: there should be width and height.")
+    rig = _rig(matrices[0], matrices[1], right @ np.linalg.inv(left))
+    return {**rig, **{name: round(value) for name, value in size.items()}}
 
 
 def changes(p: TriangulationParams, rig: Rig) -> dict[str, Any]:
@@ -72,49 +73,19 @@ def kitti(p: TriangulationParams) -> dict[str, Any]:
     return changes(p, KITTI)
 
 
-def _middlebury(entries: Mapping[str, str]) -> dict[str, float]:
-    left, right = (_numbers(name, entries[name], 9) for name in ("cam0", "cam1"))
-    (baseline,) = _numbers("baseline", entries["baseline"], 1)
-    width, height = (_numbers(name, entries.get(name, ""), 1)[0] for name in ("width", "height"))
-    return {
-        **_rig(left[:6], right[:6]),
-        "baseline": round(baseline / 1000.0, DECIMALS),
-        "width": round(width),
-        "height": round(height),
-    }
-
-
-def _kitti(left: list[float], right: list[float], size: str) -> dict[str, float]:
-    """The rig of two projection matrices (3, 4) by rows, whose fourth column has -f times the place of the camera."""
-    rig = _rig([*left[:3], *left[4:7]], [*right[:3], *right[4:7]])
-    width, height = _numbers("S_rect", size, 2) if size else (KITTI["width"], KITTI["height"])
-    baseline = round((left[3] - right[3]) / rig["focal"], DECIMALS)
-    return {**rig, "baseline": baseline, "width": round(width), "height": round(height)}
-
-
-def _rig(left: list[float], right: list[float]) -> dict[str, float]:
-    """Focal length and principal points of the first two rows of both K. Raises ValueError."""
-    f, skew, cx, zero, fy, cy = left
-    if f <= 0.0:
-        raise ValueError("The focal length should be above 0.")
-    if not _alike([f, fy, right[0], right[4]]) or any((skew, zero, right[1], right[3])):
+def _rig(left: Array, right: Array, T: Array) -> dict[str, float]:
+    """Baseline, focal length and principal points, of both K and of T_right_left. Raises ValueError in words."""
+    (f, skew, cx), (_, fy, cy), _ = left.tolist()
+    if not _alike([f, fy, right[0, 0], right[1, 1]]) or skew or right[0, 1]:
         raise ValueError("The focal lengths differ, or pixels are skewed: this is for cameras that were rectified.")
-    if not _alike([cy, right[5]]):
+    if not _alike([cy, right[1, 2]]):
         raise ValueError("The principal points are at different heights: this is for cameras that were rectified.")
-    return {"focal": f, "cx": cx, "cy": cy, "doffs": round(right[2] - cx, DECIMALS)}
+    if not np.allclose(T[:3, :3], np.eye(3), rtol=0.0, atol=TURNED):
+        raise ValueError("The cameras are turned against each other: this is for cameras that were rectified.")
+    baseline, doffs = (round(float(value), DECIMALS) for value in (-T[0, 3], right[0, 2] - cx))
+    return {"focal": f, "cx": cx, "cy": cy, "doffs": doffs, "baseline": baseline}
 
 
 def _alike(values: Iterable[float]) -> bool:
     first, *others = values
     return all(math.isclose(first, other, rel_tol=ALIKE) for other in others)
-
-
-def _numbers(name: str, text: str, count: int) -> list[float]:
-    """So many numbers from a text. Raises ValueError in words."""
-    try:
-        found = [float(word) for word in re.split(r"[\s;,]+", text.strip(" \t[]"))]
-    except ValueError:
-        found = []
-    if len(found) != count or not all(map(math.isfinite, found)):
-        raise ValueError(f"“{name}” should have {count} number{'s' * (count > 1)}.")
-    return found

@@ -10,13 +10,13 @@ from typing import Literal
 
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import quantity
+from sims.kit.scale import Scale
 from sims.kit.world_drawing import draw_in_picture
 from sims.triangulation.corners import WORLD
 from sims.triangulation.depth_plot import plot
 from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, Method, TriangulationParams
 from sims.triangulation.rig import Rig, rig
-from sims.triangulation.scale import Scale
 from sims.triangulation.solution import TriangulationSolution
 
 Side = Literal["left", "right"]
@@ -28,7 +28,7 @@ LONG_ENOUGH, SHORTEST = 36.0, 3.0
 def panes(p: TriangulationParams, s: TriangulationSolution) -> Sequence[Pane]:
     """Both pictures and the plot."""
     chosen = s.by_method[p.method]
-    scale = Scale.of(p)
+    scale = Scale.of(p.width, p.height)
     times = magnification(chosen.reprojection_left, chosen.reprojection_right, scale.factor)
     return _picture(p, s, "left", scale, times), _picture(p, s, "right", scale, times), plot(p, s)
 
@@ -49,7 +49,7 @@ def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale
     other: Side = "right" if left else "left"
     held, measured = (p.left_uv, s.measured_left) if left else (p.right_uv, s.measured_right)
     picture = _world(side, rig(p), scale).copy()
-    line = scale.line(s.line_left if left else s.line_right)
+    line = scale.lines(s.line_left if left else s.line_right).tolist()
     picture.homogeneous_line(line, other, dash="7 5", link=other)
     if p.noise > 0.0:
         _measured(picture, scale.at(measured), side)

@@ -150,8 +150,8 @@ def test_what_ros_and_people_write_is_read(text: str) -> None:
 
 
 def test_the_first_camera_of_kalibrs_chain_is_read_and_plain_lines() -> None:
-    assert read(KALIBR) == pytest.approx({k: v for k, v in EXPECTED.items() if k != "k3"})
-    assert read(LINES) == pytest.approx(EXPECTED)
+    assert read(KALIBR) == pytest.approx({**{k: v for k, v in EXPECTED.items() if k != "k3"}, "skew": 0.0})
+    assert read(LINES) == pytest.approx({**EXPECTED, "skew": 0.0})
 
 
 def test_the_example_in_the_box_can_be_used() -> None:
@@ -164,7 +164,7 @@ def test_the_example_in_the_box_can_be_used() -> None:
     [
         ("hello", "No fx, fy, cx, cy found"),
         ("", "No fx"),
-        ("K: [1, 2, 3]", "has 3 numbers; it must have 9"),
+        ("K: [1, 2, 3]", "“K” should have 9 numbers, and has 3"),
         ("K: [5, 0, 3, 1, 5, 3, 0, 0, 1]", "must be fx, skew, cx"),
         (KALIBR.replace("radtan", "equidistant"), "equidistant"),
         (KALIBR.replace("pinhole", "omni"), "omni"),

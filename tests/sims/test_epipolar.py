@@ -51,11 +51,48 @@ states = st.builds(
 )
 
 
+LEVEL = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+OWN: dict[str, dict[str, Any]] = {
+    "different cameras": {
+        "own": (1400, 1390, 940, 560, 510, 515, 300, 250, 4, -22, 3, -310, 25, 60), "own_size": (1920, 1080, 640, 480),
+    },
+    "the right camera sees the left one": {
+        "own": (458, 457, 367, 248, 900, 910, 500, 380, 2, 6, -1, 0.1, -0.05, 1.0), "own_size": (752, 480, 1024, 768),
+    },
+    "portrait": {
+        "own": (3000, 3000, 1500, 2000, 3100, 3050, 1490, 2010, -3, 2, 1, -90, 0, 5),
+        "own_size": (3000, 4000, 3000, 4000), "show_all_lines": True, "points": 12, "trail": (1.0, 8.0),
+        "candidate": (1700.0, 2100.0),
+    },
+}  # fmt: skip
+"""Stereo pairs of somebody's: the size of their pictures and their K differ, T is in any unit."""
+
+
 def pose(p: EpipolarParams, side: str) -> tuple[Array, Array]:
-    """Columns of the camera's axes in the world, and its centre: Rz(pan) C, as the contract has it."""
+    """Columns of the camera's axes in the world, and its centre: Rz(pan) C, as the contract has it.
+
+    A pair of somebody's is turned by half its rotation to both sides; its baseline has 1.2 m.
+    """
+    if p.own is not None:
+        half = cv2.Rodrigues(np.radians(p.own[8:11]) / 2.0)[0]
+        toward = LEVEL @ half.T @ p.own[11:] * (-0.6 / np.linalg.norm(p.own[11:]))
+        turned, way = (half, -toward) if side == "left" else (half.T, toward)
+        return LEVEL @ turned, np.array([0.0, 0.0, 1.0]) + way
     a = math.radians(getattr(p, f"{side}_pan"))
     turn = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
-    return turn @ [[1.0, 0, 0], [0, 0, 1], [0, -1, 0]], np.array(getattr(p, side))
+    return turn @ LEVEL, np.array(getattr(p, side))
+
+
+def lens(p: EpipolarParams, side: str) -> tuple[float, ...]:
+    """fx, fy, cx, cy."""
+    return (p.focal, p.focal, 320.0, 240.0) if p.own is None else p.own[:4] if side == "left" else p.own[4:8]
+
+
+def last(p: EpipolarParams, side: str) -> tuple[float, float]:
+    """The pixel at the lower right."""
+    sizes = p.own_size or (640, 480, 640, 480)
+    width, height = sizes[:2] if side == "left" else sizes[2:]
+    return width - 1.0, height - 1.0
 
 
 def pixels(p: EpipolarParams, side: str, points: npt.ArrayLike) -> Array:
@@ -63,11 +100,12 @@ def pixels(p: EpipolarParams, side: str, points: npt.ArrayLike) -> Array:
     R, C = pose(p, side)
     x, y, z = ((np.asarray(points, dtype=float) - C) @ R).T
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        return np.column_stack([320 + p.focal * x / z, 240 + p.focal * y / z])
+        fx, fy, cx, cy = lens(p, side)
+        return np.column_stack([cx + fx * x / z, cy + fy * y / z])
 
 
-def in_frame(seen: Array) -> bool:
-    return bool(((seen >= -0.5) & (seen <= (639.5, 479.5))).all())
+def in_frame(seen: Array, last: tuple[float, float] = (639.0, 479.0)) -> bool:
+    return bool(((seen >= -0.5) & (seen <= np.add(last, 0.5))).all())
 
 
 def close(seen: Any, expected: Any, *, within: float = 0.0) -> None:
@@ -627,7 +665,7 @@ def rig() -> Iterator[Rig]:
 
 
 def drawn_states() -> dict[str, EpipolarParams]:
-    named = {name: START.changed(changes) for name, changes in {"defaults": {}, **SIM.states}.items()}
+    named = {name: START.changed(changes) for name, changes in {"defaults": {}, **SIM.states, **OWN}.items()}
     random = np.random.default_rng(7)
     for k in range(20):
         left, right = random.uniform((-3, -3, 0), (3, 3, 3), (2, 3)).tolist()
@@ -660,28 +698,32 @@ def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: Epi
         R, C = pose(params, side)
         seen = model.world_pose(f"/{side}")
         close(seen[:3, :3], R, within=1e-9)
-        np.testing.assert_array_equal(seen[:3, 3], C)
-        np.testing.assert_array_equal(model.world_pose(f"/{side}_center")[:3, 3], C)
+        close(seen[:3, 3], C, within=1e-12)
+        close(model.world_pose(f"/{side}_center")[:3, 3], C, within=1e-12)
+        assert model.visible(f"/{side}_center") == (params.own is None), "somebody's pair can't be bent"
         corners = pixels(params, side, model.points(f"/{side}/picture"))
-        close(corners[[0, 2]], [(-0.5, -0.5), (639.5, 479.5)], within=2e-2)
+        close(corners[[0, 2]], [(-0.5, -0.5), np.add(last(params, side), 0.5)], within=2e-2)
         ray = model.points("/rays")[SIDES.index(side)]
         close(ray, [C, params.point], within=1e-6)
         pixel = s.pixel_left if side == "left" else s.pixel_right
-        assert model.visible(f"/{side}/pixel") == (pixel is not None and in_frame(np.array([pixel])))
+        assert model.visible(f"/{side}/pixel") == (
+            pixel is not None and in_frame(np.array([pixel]), last(params, side))
+        )
         if model.visible(f"/{side}/pixel"):
             place = model.world_pose(f"/{side}/pixel")[None, :3, 3]
             close(pixels(params, side, place), [pixel], within=1e-6)
     np.testing.assert_array_equal(model.world_pose("/point")[:3, 3], params.point)
-    close(ends(rig, "/baseline"), [params.left, params.right], within=1e-6)
+    close(ends(rig, "/baseline"), [pose(params, side)[1] for side in SIDES], within=1e-6)
     if params.points > 1:
         others = [f"/points/{k}" for k in range(2, 13)]
         assert [model.visible(name) for name in others] == [k < params.points for k in range(1, 12)]
         close([model.world_pose(name)[:3, 3] for name in others[: params.points - 1]], s.points[1:])
 
 
-def crosses(lines: Array) -> bool:
+def crosses(lines: Array, last: tuple[float, float]) -> bool:
     """Whether any of the lines has corners of the picture on both its sides."""
-    corners = np.array([(0, 0, 1), (639, 0, 1), (639, 479, 1), (0, 479, 1)])
+    u, v = last
+    corners = np.array([(0, 0, 1), (u, 0, 1), (u, v, 1), (0, v, 1)])
     apart = lines @ corners.T
     return bool(((apart.min(axis=1) < 0) & (apart.max(axis=1) > 0)).any()) if len(lines) else False
 
@@ -690,6 +732,7 @@ def crosses(lines: Array) -> bool:
 def test_lines_and_epipoles_lie_on_the_pictures_where_the_numbers_say(rig: Rig, params: EpipolarParams) -> None:
     rig.show(params)
     model, s = rig.model, solve(params)
+    left, right = (pose(params, side)[1] for side in SIDES)
     for side, line, pole in (
         ("left", s.line_left, s.epipole_left_pixel),
         ("right", s.line_right, s.epipole_right_pixel),
@@ -698,13 +741,15 @@ def test_lines_and_epipoles_lie_on_the_pictures_where_the_numbers_say(rig: Rig, 
             assert line is not None
             for u, v in pixels(params, side, ends(rig, f"/{side}/line")):
                 assert abs(line @ [u, v, 1]) < 0.05
-                assert min(abs(u + 0.5), abs(u - 639.5), abs(v + 0.5), abs(v - 479.5)) < 0.05, "from edge to edge"
+                right_edge, bottom = np.add(last(params, side), 0.5)
+                edges = abs(u + 0.5), abs(u - right_edge), abs(v + 0.5), abs(v - bottom)
+                assert min(edges) < 0.05, "from edge to edge"
         if model.visible(f"/{side}/epipole"):
             assert pole is not None
             place = model.world_pose(f"/{side}/epipole")[:3, 3]
             np.testing.assert_allclose(pixels(params, side, [place]), [pole], rtol=1e-6, atol=1e-4)
-            along = np.subtract(params.right, params.left)
-            across = np.cross(place - params.left, along) / np.linalg.norm(along)
+            along = right - left
+            across = np.cross(place - left, along) / np.linalg.norm(along)
             assert np.linalg.norm(across) < 1e-6, "on the baseline"
         if model.visible(f"/{side}/all_lines"):
             drawn = model.points(f"/{side}/all_lines")
@@ -713,7 +758,7 @@ def test_lines_and_epipoles_lie_on_the_pictures_where_the_numbers_say(rig: Rig, 
                 seen = np.column_stack([pixels(params, side, piece), np.ones(2)])
                 assert np.abs(seen @ lines_of(s, side)[1:].T).max(axis=0).min() < 0.05
         else:
-            assert not params.show_all_lines or s.F is None or not crosses(lines_of(s, side)[1:])
+            assert not params.show_all_lines or s.F is None or not crosses(lines_of(s, side)[1:], last(params, side))
 
 
 @each_drawn
@@ -726,7 +771,7 @@ def test_the_plane_holds_both_centres_and_the_point(rig: Rig, params: EpipolarPa
         corners = rig.model.points("/plane")
         normal = np.cross(corners[1] - corners[0], corners[3] - corners[0])
         normal /= np.linalg.norm(normal)
-        for place in (params.left, params.right, params.point):
+        for place in (*(pose(params, side)[1] for side in SIDES), params.point):
             assert abs(normal @ (np.array(place) - corners[0])) < 1e-4
 
 
@@ -740,7 +785,7 @@ def test_the_picked_pixel_is_drawn(rig: Rig, params: EpipolarParams) -> None:
         return
     side, other = s.picked.side, "right" if s.picked.side == "left" else "left"
     start, end = ends(rig, "/pick_ray")
-    close(start, getattr(params, side), within=1e-6)
+    close(start, pose(params, side)[1], within=1e-6)
     close(pixels(params, side, [end]), [s.picked.pixel], within=1e-2)
     assert not model.visible(f"/{side}/picked_line")
     if model.visible(f"/{other}/picked_line"):
@@ -765,21 +810,39 @@ def shapes(svg: str, tag: str) -> list[dict[str, str]]:
     return [dict(e.attrib) for e in xml(svg).iter() if e.tag.split("}")[-1] == tag]
 
 
-@pytest.mark.parametrize("name", ["defaults", "converging", "forward", "vertical", "picked", "noise", "zero baseline"])
+def unscaled(p: EpipolarParams, side: str, drawn: Any) -> Array:
+    """The pixels (n, 2) that are drawn at places of a picture, which is 640 wide whatever the camera's is."""
+    return np.asarray((np.asarray(drawn) + 0.5) * (last(p, side)[0] + 1.0) / 640.0 - 0.5)
+
+
+@pytest.mark.parametrize(
+    "name", ["defaults", "converging", "forward", "vertical", "picked", "noise", "zero baseline", "own pair", *OWN]
+)
 def test_pictures_show_the_pixels_of_the_solution(name: str) -> None:
-    p = DRAWN[name]
+    p = DRAWN[name].changed({"candidate": None})
     s = solve(p)
     for pane, side in zip(panes(p, s), SIDES, strict=False):
-        at = [mark_places(pane.svg)[f"{k}"] for k in range(2, p.points + 1)]
-        np.testing.assert_allclose(at, pixels_of(s, side)[1:], rtol=0, atol=0.006)
+        near, (width, height) = (last(p, side)[0] + 1.0) / 640.0, np.add(last(p, side), 1.0)
+        assert f'viewBox="-0.5 -0.5 640 {math.ceil(640 * height / width)}"' in pane.svg
+        seen = [k for k in range(2, p.points + 1) if in_frame(pixels_of(s, side)[k - 1], last(p, side))]
+        assert seen
+        at = unscaled(p, side, [mark_places(pane.svg)[f"{k}"] for k in seen])
+        np.testing.assert_allclose(at, [pixels_of(s, side)[k - 1] for k in seen], rtol=0, atol=0.006 * near)
         held = next(g for g in shapes(pane.svg, "g") if g.get("data-handle") == f"{side}_pixel")
-        assert (float(held["data-x"]), float(held["data-y"])) == (s.pixel_left if side == "left" else s.pixel_right)
+        place = float(held["data-x"]), float(held["data-y"])
+        pixel = s.pixel_left if side == "left" else s.pixel_right
+        assert pixel is not None
+        assert tuple(unscaled(p, side, place)) == pytest.approx(pixel, abs=1e-9)
+        assert f"{pixel[0]:.1f}, {pixel[1]:.1f} pixels" in held["aria-label"]
+        assert p.changed(SIM.handles[f"{side}_pixel"](p, place)).point == pytest.approx(p.point), "it is held there"
+        assert SIM.handles[f"pick_{side}"](p, place)["pick"].startswith(f"{side}:{pixel[0]:.6f}"[:8])
         dashed = [d for d in shapes(pane.svg, "line") if d.get("stroke-dasharray") == "7 5"]
         line: Any = s.line_left if side == "left" else s.line_right
         assert len(dashed) == (line is not None)
         for d in dashed:
             for k in ("1", "2"):
-                assert abs(np.dot(line, [float(d[f"x{k}"]), float(d[f"y{k}"]), 1])) < 0.02
+                end = unscaled(p, side, (float(d[f"x{k}"]), float(d[f"y{k}"])))
+                assert abs(np.dot(line, [*end, 1])) < 0.02 * near
 
 
 def marks(svg: str, name: str) -> list[ElementTree.Element]:

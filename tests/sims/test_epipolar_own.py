@@ -12,10 +12,12 @@ import numpy.typing as npt
 import pytest
 
 from sims.epipolar import SIM, EpipolarParams, solve
-from sims.epipolar.calibration import EXAMPLE, changes, read
+from sims.epipolar.calibration import EXAMPLE, changes, read, says
 from sims.epipolar.own import OwnPair
 from sims.kit import readout
 from sims.kit.readout import figure
+from sims.kit.refusals import BadParams
+from sims.triangulation.calibration import EXAMPLE as MIDDLEBURY
 from tests.sims.markup import words, xml
 
 Array = npt.NDArray[np.float64]
@@ -84,18 +86,23 @@ projection_matrix:
     return "\n".join(reversed(texts) if right_first else texts)
 
 
+def own(text: str, **more: Any) -> Any:
+    """Both calibrations that are taken from a text."""
+    return changes(EpipolarParams().changed(more), read(text))["own"]
+
+
 def test_a_pair_is_read_as_opencv_writes_it(tmp_path: Path) -> None:
     for names in (("K1", "K2"), ("M1", "M2"), ("cameraMatrix1", "cameraMatrix2")):
-        np.testing.assert_allclose(read(opencv(tmp_path, names)), EXPECTED, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(read(opencv(tmp_path, ending="json")), EXPECTED, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(own(opencv(tmp_path, names)), EXPECTED, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(own(opencv(tmp_path, ending="json")), EXPECTED, rtol=0, atol=1e-9)
     pasted = "\n".join(f"{n} = {m.tolist()}" for n, m in (("K1", K_LEFT), ("K2", K_RIGHT), ("R", R), ("T", T)))
-    np.testing.assert_allclose(read(pasted), EXPECTED, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(own(pasted), EXPECTED, rtol=0, atol=1e-9)
 
 
 def test_a_pair_is_read_as_kalibr_and_ros_write_it() -> None:
-    np.testing.assert_allclose(read(kalibr()), EXPECTED, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(own(kalibr()), EXPECTED, rtol=0, atol=1e-9)
     for right_first in (False, True):
-        np.testing.assert_allclose(read(ros(right_first=right_first)), EXPECTED, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(own(ros(right_first=right_first)), EXPECTED, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -113,7 +120,7 @@ def test_a_pair_is_read_as_kalibr_and_ros_write_it() -> None:
 )  # fmt: skip
 def test_what_is_no_pair_is_refused_in_words(text: str, said: str) -> None:
     with pytest.raises(ValueError, match=said.split(" (")[0]):
-        read(text)
+        own(text)
 
 
 def seen(points: Array) -> tuple[Array, Array]:
@@ -127,6 +134,139 @@ def seen(points: Array) -> tuple[Array, Array]:
 def state(**more: Any) -> EpipolarParams:
     p = EpipolarParams()
     return p.changed({**changes(p, read(EXAMPLE)), "own": tuple(EXPECTED), **more})
+
+
+def chain(count: int) -> str:
+    """Kalibr's of more cameras: each is turned and shifted against the one before it as the second is."""
+    first, second = kalibr().split("cam1:")
+    return first + "".join(f"cam{k}:{second}" for k in range(1, count))
+
+
+def three(folder: Path) -> str:
+    """What OpenCV's sample 3calibration writes of three cameras."""
+    storage = cv2.FileStorage(str(folder / "three.yml"), cv2.FILE_STORAGE_WRITE)
+    storage.write("imageWidth", 752)
+    storage.write("imageHeight", 480)
+    for k, K in enumerate((K_LEFT, K_RIGHT, K_LEFT), start=1):
+        storage.write(f"cameraMatrix{k}", K)
+        storage.write(f"distCoeffs{k}", np.zeros((5, 1)))
+    for k, (turn, shift) in enumerate(((R, T), (R @ R, 2.0 * T)), start=2):
+        storage.write(f"R1{k}", turn)
+        storage.write(f"T1{k}", shift)
+    storage.release()
+    return (folder / "three.yml").read_text()
+
+
+def test_of_more_cameras_the_pair_is_the_chosen_one_and_it_is_said() -> None:
+    p, found = EpipolarParams(), read(chain(4))
+    assert [each["name"] for each in found] == ["cam0", "cam1", "cam2", "cam3"]
+    first = p.changed(changes(p, found))
+    np.testing.assert_allclose(first.own, EXPECTED, rtol=0, atol=1e-9)  # type: ignore[arg-type]
+    assert "cam0 on the left and cam1 on the right; for others of its 4" in says(first, found)
+    p = p.changed({"left_of_text": 2, "right_of_text": 4})
+    chosen = p.changed(changes(p, found))
+    assert chosen.own is not None
+    assert chosen.own[:8] == pytest.approx(EXPECTED[4:8] * 2)
+    two = np.eye(4)
+    two[:3, :3], two[:3, 3:] = R, T
+    np.testing.assert_allclose(chosen.own[11:], (two @ two)[:3, 3], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(chosen.own[8:11], np.degrees(2 * TURN), rtol=0, atol=1e-9)
+    assert "cam1 on the left and cam3 on the right" in says(chosen, found)
+    assert EpipolarParams.from_query(chosen.query_items().items()) == chosen
+
+
+def test_three_cameras_of_opencvs_are_told_from_the_first(tmp_path: Path) -> None:
+    np.testing.assert_allclose(own(three(tmp_path), right_of_text=3)[11:], 2.0 * T[:, 0], rtol=0, atol=1e-9)
+    between = own(three(tmp_path), left_of_text=2, right_of_text=3)
+    np.testing.assert_allclose(between[8:11], np.degrees(TURN), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(between[11:], (2.0 * T - R @ T)[:, 0], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("pair", [(1, 5), (2, 2)])
+def test_a_pair_that_is_not_in_the_text_is_refused_with_those_that_are(pair: tuple[int, int]) -> None:
+    with pytest.raises(ValueError, match="1 is cam0, 2 is cam1, 3 is cam2, 4 is cam3"):
+        own(chain(4), left_of_text=pair[0], right_of_text=pair[1])
+
+
+def test_the_pictures_have_the_size_that_the_text_says_or_one_round_the_principal_points() -> None:
+    p = EpipolarParams()
+    said = p.changed(changes(p, read(EXAMPLE)))
+    assert said.sizes == ((752, 480), (752, 480))
+    assert "752 × 480 and 752 × 480 pixels." in says(said, read(EXAMPLE))
+    unsaid = said.changed({"own_size": None})
+    assert unsaid.sizes == ((735, 498), (761, 511))
+    assert "if the principal points are in their middle" in says(unsaid, read(EXAMPLE))
+    old = EpipolarParams.from_query([("own", ",".join(map(str, said.own or ())))])
+    assert (old.own, old.sizes) == (said.own, unsaid.sizes), "links from before sizes were read"
+
+
+def test_rigs_of_stereo_data_sets_are_taken_too() -> None:
+    middlebury = own(MIDDLEBURY)
+    assert middlebury == pytest.approx(
+        (4161.221, 4161.221, 1445.577, 984.686, 4161.221, 4161.221, 1654.636, 984.686, 0, 0, 0, -0.176252, 0, 0)
+    )
+
+
+@pytest.mark.parametrize("sizes", [(1920, 1080, 640, 480)])
+def test_a_pair_of_different_cameras_is_opencvs(sizes: tuple[int, ...]) -> None:
+    p = EpipolarParams().changed(
+        {"own": (1400, 1390, 940, 560, 510, 515, 300, 250, 4, -22, 3, -310, 25, 60), "own_size": sizes, "points": 12}
+    )
+    assert p.own is not None
+    s = solve(p)
+    assert s.F is not None
+    assert (s.size_left, s.size_right) == (sizes[:2], sizes[2:])
+    turn, shift = cv2.Rodrigues(np.radians(p.own[8:11]))[0], np.array(p.own[11:])
+    left, right = s.K @ np.eye(3, 4), s.K_right @ np.column_stack([turn, shift])
+    both = np.isfinite(s.pixels_left + s.pixels_right).all(axis=1)
+    X = cv2.triangulatePoints(left, right, s.pixels_left[both].T, s.pixels_right[both].T)
+    for P, seen in ((left, s.pixels_left[both]), (right, s.pixels_right[both])):
+        x = P @ X
+        np.testing.assert_allclose((x[:2] / x[2]).T, seen, rtol=0, atol=1e-6, err_msg="their true relative pose")
+    for which, pixels, lines in ((1, s.pixels_left, s.lines_right), (2, s.pixels_right, s.lines_left)):
+        assert lines is not None
+        expected = cv2.computeCorrespondEpilines(pixels[both].reshape(-1, 1, 2), which, s.F)[:, 0]
+        np.testing.assert_allclose(lines[both], expected, rtol=1e-4, atol=1e-2)  # single precision
+
+
+def test_with_a_pair_of_somebodys_its_controls_stand_there_and_a_preset_takes_it_away() -> None:
+    p = state(pick="left:700,470")
+    assert set(SIM.offers(p).idle()) == {"left", "right", "left_pan", "right_pan", "focal"}
+    assert set(SIM.offers(EpipolarParams()).idle()) == {"own_left", "own_right"}
+    preset: Any = next(action for action in SIM.actions if action.name == "rectified")
+    (step,) = preset.run(p)
+    back = p.moved(step.changes)
+    assert (back.pair, back.pick, back.sizes) == (None, None, ((640, 480), (640, 480)))
+
+
+@pytest.mark.parametrize("pick", ["left:752,3", "right:3,480"])
+def test_a_pixel_outside_somebodys_pictures_is_refused_with_their_size(pick: str) -> None:
+    with pytest.raises(BadParams) as caught:
+        EpipolarParams.from_query({**state().query_items(), "pick": pick}.items())
+    ((name, _, allowed),) = caught.value.complaints
+    assert (name, allowed) == ("pick", "left:u,v or right:u,v, with u from 0 to 751 and v from 0 to 479")
+
+
+def test_the_point_is_where_both_of_a_turned_pair_see_it() -> None:
+    """Cameras that look towards each other's side see nothing of the place that it has by itself."""
+    p = EpipolarParams()
+    found = read(EXAMPLE)
+    found[1]["pose"] = np.block(
+        [[cv2.Rodrigues(np.array([0, 1.4, 0]))[0], np.array([[-0.7], [0], [0.6]])], [0, 0, 0, 1]]
+    ).tolist()
+    s = solve(p.changed(changes(p, found)))
+    assert s.pixel_left is not None
+    assert s.pixel_right is not None
+    assert all(0.0 < v < edge for v, edge in zip((*s.pixel_left, *s.pixel_right), (752, 480) * 2, strict=True))
+
+
+def test_a_match_that_was_typed_is_drawn_with_its_line() -> None:
+    p = state(own_left=(300.0, 200.0), own_right=(280.0, 190.0))
+    left, right, *_ = SIM.panes(p, solve(p)) if SIM.panes else ()
+    assert "yours" in left.svg
+    assert "yours" in right.svg
+    assert 'stroke-dasharray="2 6"' in right.svg
+    assert "yours" not in SIM.panes(state(), solve(state()))[0].svg if SIM.panes else ""
 
 
 def solved(p: EpipolarParams) -> OwnPair:

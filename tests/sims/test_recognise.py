@@ -168,5 +168,5 @@ def test_pasted_euler_angles_bring_their_own_convention() -> None:
 def test_what_was_recognised_is_said() -> None:
     assert SIM.paste is not None
     found = SIM.paste.found("wxyz 0.5 0.5 0.5 0.5")
-    assert "Read as a quaternion, w first." in SIM.paste.says(found)
+    assert "Read as a quaternion, w first." in SIM.paste.says(EulerParams(), found)
     assert taken("wxyz 0.5 0.5 0.5 0.5") == EulerParams().changed(SIM.paste.changes(EulerParams(), found))

@@ -831,7 +831,7 @@ def test_a_calibration_of_kitti_is_understood(text: str) -> None:
         (calibration.EXAMPLE.replace("4161.221 0 1654", "4000 0 1654"), "focal lengths differ"),
         (calibration.EXAMPLE.replace("cam0=[4161.221", "cam0=[0"), "above 0"),
         (calibration.EXAMPLE.replace("984.686; 0 0 1]\nd", "900; 0 0 1]\nd"), "different heights"),
-        (calibration.EXAMPLE.replace("width=2880", ""), "“width” should have 1 number."),
+        (calibration.EXAMPLE.replace("width=2880", ""), "doesn’t say how large the pictures are"),
         (calibration.EXAMPLE.replace("176.252", "nan"), "“baseline” should have 1 number."),
         (KITTI_TEXT.replace("7.215377e+02", "0"), "above 0"),
     ],
