@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import pytest
+from playwright.sync_api import Page, expect
 
 from app.rooms import places
 from app.rooms.places import Fairness, Full, neighbourhood
+from app.sockets.visits import IDLE
 from tests.app.conftest import Local
+from tests.app.page import Page as LearnersPage
+from tests.app.page import closed
 
 
 def rooms(*openers: str) -> list[SimpleNamespace]:
@@ -72,3 +77,26 @@ def test_who_has_too_many_is_told_in_words_and_tries_again_by_itself() -> None:
         wait = refused.headers["retry-after"]
         assert f'<meta http-equiv="refresh" content="{wait}">' in refused.text
         assert local.http.get("/sims/camera").status_code == 200, "pages without a room are for everybody"
+
+
+def test_a_room_in_which_nobody_does_anything_is_put_away_and_comes_back() -> None:
+    with Local(idle_minutes=1e-9) as local, LearnersPage(local.url, "yaw=33") as page:
+        local.sweep()
+        assert {closed(page.channel), closed(page.viser)} == {IDLE}
+        with LearnersPage(local.url, page.states[-1]["query"], key=page.key) as again:
+            assert again.params["yaw"] == 33.0
+
+
+@pytest.mark.e2e
+def test_a_page_that_was_put_away_waits_for_a_touch(page: Page) -> None:
+    with Local(idle_minutes=1e-9) as local:
+        page.goto(f"{local.url}/sims/euler-angles/embed?yaw=33&controls=0")
+        page.wait_for_function("window.sim3?.live")
+        paused = page.get_by_role("heading", name="Paused")
+        local.sweep()
+        expect(paused).to_be_visible()
+        page.wait_for_timeout(2000)
+        expect(paused).to_be_visible()  # it doesn't come back by itself
+        page.mouse.click(20, 20)
+        expect(paused).to_be_hidden()
+        expect(page).to_have_url(re.compile("yaw=33"))
