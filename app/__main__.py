@@ -12,11 +12,14 @@ import threading
 import uvicorn
 from fastapi import FastAPI
 
+from app import logs
+from app.routes.services import Services
 from app.settings import Settings, load
 from app.sockets.protocol import LARGEST, Websocket
 from app.web import create_app
 from sims.kit.viser_internals import ViserHost
 
+log = logging.getLogger("sim3")
 SWITCH = 0.001
 """Seconds that a thread which works beside the event loop may keep Python's lock when the loop asks for it."""
 
@@ -25,7 +28,7 @@ def main() -> None:
     """Run until interrupted. One event loop serves viser, the pages and all websockets."""
     settings = load()
     sys.setswitchinterval(SWITCH)
-    logging.basicConfig(level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
+    logs.begin(settings.log)
     if sys.platform != "win32":
         import uvloop
 
@@ -34,8 +37,9 @@ def main() -> None:
     app = create_app(settings, host)
     server = uvicorn.Server(config(settings, app))
     finished = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: setattr(server, "should_exit", True))
+    ending = Ending(server, app.state.services, settings.drain_seconds)
+    signal.signal(signal.SIGINT, lambda *_: ending.now())
+    signal.signal(signal.SIGTERM, lambda *_: host.loop.call_soon_threadsafe(ending.begin))
 
     async def serve() -> None:
         try:
@@ -53,6 +57,32 @@ def main() -> None:
     host.stop()
     if not server.started:
         raise SystemExit(f"Sim3 can't listen on {settings.host}:{settings.port}; is the port taken? Set SIM3_PORT.")
+
+
+class Ending:
+    """How the server ends: it takes no new rooms, lets balancers see it, sends the pages elsewhere, and is gone."""
+
+    def __init__(self, server: uvicorn.Server, services: Services, seconds: float) -> None:
+        self._server = server
+        self._services = services
+        self._seconds = seconds
+
+    def begin(self) -> None:
+        """End in the time that balancers need; asked for the second time, at once."""
+        if self._services.sessions.draining:
+            self.now()
+            return
+        self._services.sessions.draining = True
+        log.info("ending: no new rooms are taken, and /readyz says so")
+        asyncio.get_running_loop().call_later(self._seconds, self._last)
+
+    def _last(self) -> None:
+        self._services.bridge.visits.send_elsewhere()
+        self.now()
+
+    def now(self) -> None:
+        """End at once."""
+        self._server.should_exit = True
 
 
 def config(settings: Settings, app: FastAPI) -> uvicorn.Config:

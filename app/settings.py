@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Literal
 
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -26,6 +27,13 @@ class Settings(BaseSettings):
     lesson_dir: Path | None = Field(None, description="folder whose lessons (.md) stand on the launcher's second shelf")
     max_upload: int = Field(100, ge=1, le=2000, description="megabytes that a file of a learner may have")
     max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
+    max_sessions_per_address: int = Field(200, ge=1, le=100_000, description="of these, from one network address")
+    max_openings: int = Field(180, ge=1, le=100_000, description="sessions that one address may open within a minute")
+    idle_minutes: float = Field(120, gt=0, description="minutes without input after which a session is put away")
+    drain_seconds: float = Field(
+        0, ge=0, le=8, description="seconds between SIGTERM, from which /readyz says 503, and the end"
+    )
+    log: Literal["text", "json"] = Field("text", description="how lines of the log are written")
     origins: str = Field("", description="further origins, separated by spaces, whose pages may open a websocket")
     forwarded_allow_ips: str = Field(
         "127.0.0.1", validation_alias="FORWARDED_ALLOW_IPS",

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from app.values import complaints, shown
 from geometry import GeometryError
+from sims.kit.params import Params
 from sims.kit.refusals import Complaint
 from sims.kit.sim import Sim
 from sims.kit.spelling import clipped
@@ -28,9 +29,12 @@ class Unknown(KeyError):
 
 
 def error_message(
-    sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any] | None = None, *, beside: bool = False
-) -> dict[str, Any]:
+    sim: Sim[Any, Any], error: Exception, given: Mapping[str, Any] | None = None, *, beside: bool = False,
+    state: Params | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """The message that pages get; `given` are the parameters as they came. What nobody has foreseen is logged.
+
+    The log has the `state` in which that was, as a link has it.
 
     `beside`: it stands beside the control, and needs neither name nor value.
     """
@@ -44,7 +48,8 @@ def error_message(
         known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
     place = traceback.extract_tb(error.__traceback__)[-1]
-    log.error("%s can't go on from here: %r in %s, line %s", sim.slug, error, place.filename, place.lineno)
+    where = "here" if state is None else f"?{state.query()}"
+    log.error("%s can't go on from %s: %r in %s, line %s", sim.slug, where, error, place.filename, place.lineno)
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
 
 

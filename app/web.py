@@ -14,8 +14,9 @@ from starlette.routing import Route, WebSocketRoute
 
 from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
+from app.rooms.places import Fairness
 from app.rooms.registry import Sessions
-from app.routes import api, files, lessons, links, pages, rendering, sockets, text
+from app.routes import api, files, lessons, links, pages, rendering, sockets, text, watching
 from app.routes.answers import Answers, Busy, Gone
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
@@ -26,7 +27,7 @@ from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router)
+ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router, watching.router)
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
@@ -35,6 +36,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        services.sessions.begin_sweeping()
         yield
         await services.sessions.close()
         services.answers.close()
@@ -63,8 +65,10 @@ def _addresses() -> list[str]:
 def _services(settings: Settings, host: ViserHost) -> Services:
     largest = settings.max_upload * 1_000_000
     libraries = {sim.slug: sim.files.library(settings.cloud_dir, largest) for sim in SIMS if sim.files is not None}
-    sessions = Sessions(settings.max_sessions, libraries)
+    fairness = Fairness(settings.max_sessions_per_address, settings.max_openings)
+    sessions = Sessions(settings.max_sessions, libraries, fairness, settings.idle_minutes * 60)
     bridge = Bridge(host, sessions, settings.origins)
+    sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
     return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest)
 
@@ -82,8 +86,10 @@ async def _missing(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if api.in_api(request.scope):
         return JSONResponse({"detail": error.detail}, error.status_code, error.headers)
-    response = rendering.render(request, "missing.html", status=error.status_code, detail=error.detail)
-    response.headers.update(error.headers or {})
+    headers = error.headers or {}
+    wait = headers.get("retry-after")
+    response = rendering.render(request, "missing.html", status=error.status_code, detail=error.detail, wait=wait)
+    response.headers.update(headers)
     return response
 
 

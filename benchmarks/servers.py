@@ -17,7 +17,10 @@ from tests.server import camera_message, free_port, wait_for
 
 ROOT = Path(__file__).resolve().parent.parent
 SLUG = "euler-angles"
-SETTINGS = {"SIM3_HOST": "127.0.0.1", "SIM3_MAX_SESSIONS": "5000"}
+SETTINGS = {
+    "SIM3_HOST": "127.0.0.1", "SIM3_MAX_SESSIONS": "5000", "SIM3_MAX_SESSIONS_PER_ADDRESS": "5000",
+    "SIM3_MAX_OPENINGS": "5000",
+}  # fmt: skip
 
 
 class Server:

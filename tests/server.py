@@ -140,6 +140,11 @@ class Server:
                 self.kill()
                 raise AssertionError(f"the server didn't end when told to:\n{self.log()}") from None
 
+    def send_end(self) -> None:
+        """Tell it to end, and don't wait."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGTERM)
+
     def kill(self) -> None:
         """End it as a crash would: at once, without a word to anybody."""
         if self._process is not None:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextvars import copy_context
 from typing import Any
 
+from app import metrics
 from app.rooms.showing import Showing
 from app.rooms.solver import Solver
 from app.rooms.telling import Message, Telling
@@ -54,6 +55,7 @@ class Drawing:
         self._newest = newest
         self._failed = failed
         self._dirty = False
+        self._asked_at = 0.0
         self._drawn_at = 0.0
         self.work: Work | None = None
         """What the pool does for this session."""
@@ -62,6 +64,10 @@ class Drawing:
 
     def soon(self) -> None:
         """Solve and draw soon; calls before that happens join it."""
+        if self._dirty:
+            metrics.COALESCED.labels(self.sim.slug).inc()
+        else:
+            self._asked_at = time.monotonic()
         self._dirty = True
         if self.task is None:
             self.task = asyncio.get_running_loop().create_task(self._draw())
@@ -92,7 +98,7 @@ class Drawing:
         reporting = asyncio.create_task(self._report()) if self.sim.heavy else None
         try:
             while self._dirty:
-                self._dirty = False
+                self._dirty, asked_at = False, self._asked_at
                 try:
                     await self._solve(*self._newest())
                 except Superseded:
@@ -102,9 +108,11 @@ class Drawing:
                 if self._telling.listeners:
                     self._telling.tell(self._showing.news(self.solved, self.solution, self.version, self.words))
                 self._drawn_at = time.monotonic()
+                metrics.LATENCY.labels(self.sim.slug).observe(self._drawn_at - asked_at)
                 self._telling.tell_state_soon()
         except Exception:
-            log.exception("drawing %s failed", self.sim.slug)
+            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
+            log.exception("drawing %s failed in the state %s", self.sim.slug, self.solved.query())
         finally:
             self.task = None
             if reporting is not None:
@@ -112,9 +120,11 @@ class Drawing:
 
     async def _solve(self, params: Params, version: int) -> None:
         """Bring the solution up to a state. Raises `Superseded`."""
+        begun = time.monotonic()
         try:
             self.solution = await (self._work_out(params) if self.sim.heavy else self._at_once(params))
             self.solved, self.version = params, version
+            metrics.SOLVING.labels(self.sim.slug).observe(time.monotonic() - begun)
         except Superseded:
             raise
         except Exception as error:
@@ -146,7 +156,8 @@ class Drawing:
         try:
             viewer.draw(self.solved, self.solution, self.version)
         except Exception:
-            log.exception("drawing %s for a viewer failed", self.sim.slug)
+            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
+            log.exception("drawing %s for a viewer failed in the state %s", self.sim.slug, self.solved.query())
 
     @property
     def before(self) -> Params:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
+from app.rooms.places import Fairness, Full, neighbourhood
 from app.rooms.session import Session
 from app.rooms.solver import Solver, workers
 from sims.kit import child
@@ -16,19 +18,33 @@ from sims.kit.sim import Library, Sim
 
 LOADING = 10.0
 """Seconds that a page may take from its address to its websockets; its session is kept so long at least."""
+LEFT = 2.0
+"""Seconds that a session which everybody has left is kept at least: its page may be loading anew."""
 UNVISITED = 60.0
 """Seconds that a session without viewers is kept."""
-
-
-class Full(RuntimeError):
-    """No more sessions fit."""
+SWEPT_EVERY = 15.0
+"""Seconds between two looks at whether sessions can go."""
 
 
 class Sessions:
-    """At most `limit` sessions, by sim and room. `libraries` are those of the sims that have files, by slug."""
+    """At most `limit` sessions, by sim and room. `libraries` are those of the sims that have files, by slug.
 
-    def __init__(self, limit: int, libraries: Mapping[str, Library] | None = None) -> None:
-        self._limit = limit
+    What an address may have of them `fairness` says. A session in which nobody does anything for `idle` seconds is put
+    away.
+    """
+
+    def __init__(
+        self, limit: int, libraries: Mapping[str, Library] | None = None, fairness: Fairness | None = None,
+        idle: float = math.inf
+    ) -> None:  # fmt: skip
+        self.limit = limit
+        self._fairness = fairness or Fairness(limit, limit)
+        self._idle = idle
+        self.put_away: Callable[[Session], None] = lambda session: None
+        """Closes the pages of a session; they wait until somebody does something."""
+        self.draining = False
+        """The server ends soon: rooms that it doesn't have are opened elsewhere."""
+        self._sweeping: asyncio.Task[None] | None = None
         self._libraries = libraries or {}
         self._by_room: dict[tuple[str, str], Session] = {}
         self._solver = Solver()
@@ -55,22 +71,28 @@ class Sessions:
         return self._by_room.get((sim.slug, room))
 
     def open(
-        self, sim: Sim[Any, Any], room: str, params: Params, *, opened: Params | None = None, watching: bool = False
-    ) -> Session:
+        self, sim: Sim[Any, Any], room: str, params: Params, *, opened: Params | None = None, watching: bool = False,
+        address: str = "",
+    ) -> Session:  # fmt: skip
         """The session of a room, begun with `params` if nobody with control has been there. Raises `Full`.
 
         `opened` is the state of the link, where that is another: the page of a restarted server has gone on since.
+        `address` is that of who asks.
         """
-        session = self.find(sim, room) or self._begin(sim, room, params)
+        session = self.find(sim, room) or self._begin(sim, room, params, neighbourhood(address))
         if session.waiting and not watching:
             session.begin(params, params if opened is None else opened)
         return session
 
-    def _begin(self, sim: Sim[Any, Any], room: str, params: Params) -> Session:
+    def _begin(self, sim: Sim[Any, Any], room: str, params: Params, opener: str) -> Session:
         self.sweep()
-        if len(self._by_room) >= self._limit:
+        if self.draining:
+            raise Full("The server is being restarted.", wait=2)
+        if len(self._by_room) >= self.limit:
             self._drop_one()
+        self._fairness.may_open(opener, self._by_room.values())
         session = Session(sim, room, params, self._solver, self._libraries.get(sim.slug))
+        session.opener = opener
         self._by_room[sim.slug, room] = session
         session.waiting = True
         if sim.ahead and sim.slug not in self._begun and session.drawing.task is not None:
@@ -85,22 +107,50 @@ class Sessions:
                 self._ahead.submit(piece)
 
     def _drop_one(self) -> None:
-        """Make room: forget the session that nobody has looked at for longest. Raises `Full` if all are in use."""
-        before = time.monotonic() - LOADING
-        empty = [(s.left_at, key) for key, s in self._by_room.items() if not s.occupied and s.left_at < before]
+        """Make room: forget the session that nobody has looked at for longest. Raises `Full` if all are in use.
+
+        One that everybody has left can go soon, for who comes back brings its state; one whose page loads has time.
+        """
+        now = time.monotonic()
+        empty = [
+            (s.left_at, key)
+            for key, s in self._by_room.items()
+            if not s.occupied and s.left_at < now - (LEFT if s.visited else LOADING)
+        ]
         if not empty:
             raise Full
         self._by_room.pop(min(empty)[1]).end()
 
     def sweep(self) -> None:
-        """Forget sessions that nobody has looked at for a while."""
+        """Forget sessions that nobody has looked at for a while, and put away those in which nobody does anything."""
         now = time.monotonic()
         for key, session in list(self._by_room.items()):
             if not session.occupied and now - session.left_at > UNVISITED:
                 self._by_room.pop(key).end()
+            elif session.occupied and now - session.touched_at > self._idle:
+                self.put_away(session)
+
+    def begin_sweeping(self) -> None:
+        """Sweep now and then from now on, whether or not somebody comes."""
+
+        async def sweeping() -> None:
+            while True:
+                await asyncio.sleep(SWEPT_EVERY)
+                self.sweep()
+
+        self._sweeping = asyncio.create_task(sweeping())
+
+    def by_sim(self) -> dict[str, list[Session]]:
+        """All sessions, by the slugs of their sims."""
+        found: dict[str, list[Session]] = {}
+        for (slug, _), session in self._by_room.items():
+            found.setdefault(slug, []).append(session)
+        return found
 
     async def close(self) -> None:
         """End the sessions, the pools, and the processes that read files."""
+        if self._sweeping is not None:
+            self._sweeping.cancel()
         working = [task for session in self._by_room.values() for task in session.end()]
         await asyncio.gather(*working, return_exceptions=True)
         child.stop()

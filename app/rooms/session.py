@@ -16,6 +16,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from app import metrics
 from app.rooms.drawing import Drawing
 from app.rooms.highlight import Highlight
 from app.rooms.looking_up import LookingUp
@@ -23,6 +24,7 @@ from app.rooms.motion import Motion, gliding
 from app.rooms.solver import Solver
 from app.rooms.telling import Listener, Message, Telling
 from app.trouble import Unknown, error_message
+from geometry import GeometryError
 from sims.kit.challenge import checked
 from sims.kit.entered import entered, number, row
 from sims.kit.fields import Numbers, Slider
@@ -46,7 +48,11 @@ class Session:
         self.version = 0
         self.waiting = False
         """Only people who watch have come so far."""
-        self.left_at = time.monotonic()
+        self.left_at = self.touched_at = time.monotonic()
+        self.visited = False
+        """Somebody has looked at it."""
+        self.opener = ""
+        """The neighbourhood of the address from which it was opened, if that is known."""
         self.library = library
         self.given = () if library is None else (library,)
         """What the sim's functions need besides the parameters."""
@@ -257,12 +263,14 @@ class Session:
 
     # ---- what goes wrong
 
-    def _failed(self, error: Exception) -> None:
-        self.telling.tell(error_message(self.sim, error))
+    def _failed(self, error: Exception, params: Params | None = None) -> None:
+        self.telling.tell(error_message(self.sim, error, state=params or self.params))
 
     def _not_solved(self, params: Params, error: Exception) -> None:
         """A state has no solution: the one before stays."""
-        self._failed(error)
+        if not isinstance(error, GeometryError):
+            metrics.FAILURES.labels(self.sim.slug, "solve").inc()
+        self._failed(error, params)
         if self.params is params:
             self.params = self.drawing.solved
 
@@ -274,10 +282,14 @@ class Session:
 
     def join(self, viewer: Viewer) -> None:
         """Add a viewer and show it the present state."""
+        self.visited = True
+        self.touch()
         self.drawing.join(viewer)
 
     def listen(self, listener: Listener) -> None:
         """Add a channel, and tell it what to show."""
+        self.visited = True
+        self.touch()
         listener(self.drawing.everything())
         self.telling.listeners.add(listener)
 
@@ -291,6 +303,10 @@ class Session:
         if not self.occupied:
             self.left_at = time.monotonic()
             self.motion.stop()
+
+    def touch(self) -> None:
+        """Somebody does something here."""
+        self.touched_at = time.monotonic()
 
     @property
     def occupied(self) -> bool:

@@ -10,6 +10,7 @@ from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import JSONResponse, Response
 from pydantic import ValidationError
 
+from app import metrics
 from app.rooms.keys import room_of
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
@@ -63,6 +64,7 @@ async def upload(request: Request, given: Given, slug: str, room: str, key: str,
             session.forget(known_as)  # it was given up meanwhile
         else:
             session.upload(known_as, len(data), changes)
+            metrics.UPLOADS.inc()
     return JSONResponse({"name": name}, headers=ANYWHERE)
 
 

@@ -10,14 +10,14 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 
 from app.rooms.keys import is_room, new_key, room_of
-from app.rooms.registry import Full, Sessions
+from app.rooms.places import Full
+from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from app.routes import links, rendering
 from app.routes.docs import described
 from app.routes.rendering import sim_or_404
 from app.routes.services import Given, Services
 from geometry import GeometryError
-from sims import SIMS
 from sims.kit import viser_client
 from sims.kit.column import Column
 from sims.kit.params import Params
@@ -28,8 +28,6 @@ from sims.kit.spelling import clipped
 AnySim = Sim[Any, Any]
 FOR_EVER = {"access-control-allow-origin": "*", "cache-control": "public, max-age=31536000, immutable"}
 """For what never changes under its address, also in frames that are sandboxed into an origin of their own."""
-FULL = 60
-"""Seconds after which a full server may have room again."""
 router = APIRouter(include_in_schema=False)
 
 
@@ -80,7 +78,8 @@ def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str)
     session = None
     if request.method != "HEAD":  # nobody is there to use a session
         try:
-            session = _opened(given.sessions, sim, room, params, changes=bool(links.parts(query).params))
+            address = request.client.host if request.client else ""
+            session = _opened(given.sessions, sim, room, params, address, changes=bool(links.parts(query).params))
             params = session.params
         except GeometryError as error:  # of what no parameter's bounds exclude
             raise refusal_of(params, error) from None
@@ -106,13 +105,12 @@ def _page(
     return rendering.viewer(request, sim, column, view, options, given.largest, steps, room, key)
 
 
-def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, *, changes: bool) -> Session:
+def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, address: str, *, changes: bool) -> Session:
     known = sessions.find(sim, room)
     try:
-        session = sessions.open(sim, room, params)
-    except Full:
-        words = "All places on this server are taken; try again in a minute."
-        raise HTTPException(503, words, {"retry-after": str(FULL)}) from None
+        session = sessions.open(sim, room, params, address=address)
+    except Full as full:
+        raise HTTPException(503, str(full), {"retry-after": str(full.wait)}) from None
     if known and changes:
         session.change(params.model_dump(), live=False)
     return session
@@ -175,8 +173,3 @@ async def without_slash(request: Request) -> Response:
 
 def _redirect(request: Request, path: str) -> Response:
     return RedirectResponse(f"{path}?{request.url.query}" if request.url.query else path)
-
-
-@router.api_route("/healthz", methods=["GET", "HEAD"])
-async def healthz(given: Given) -> dict[str, Any]:
-    return {"status": "ok", "sims": len(SIMS), "sessions": len(given.sessions)}

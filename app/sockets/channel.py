@@ -10,7 +10,8 @@ from urllib.parse import parse_qsl
 
 from starlette.websockets import WebSocket
 
-from app.rooms.registry import Full, Sessions
+from app.rooms.places import Full
+from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from app.sockets.channel_messages import (
     Act,
@@ -67,6 +68,7 @@ class Conversation:
 
     def hear(self, message: Any) -> None:
         """Do what a message says."""
+        self._session.touch()
         if (do := self._does.get(type(message))) is not None:
             do(message)
 
@@ -165,12 +167,14 @@ class ChannelSockets:
         """The session of a state that a page holds; of the sim's first one, if that state can't be solved."""
         sim, room, watching = visit.sim, visit.room, visit.watching
         try:
-            return self._sessions.open(sim, room, _state(sim, held), opened=_state(sim, opened), watching=watching)
+            return self._sessions.open(
+                sim, room, _state(sim, held), opened=_state(sim, opened), watching=watching, address=visit.address
+            )
         except Full:
             raise
         except Exception as error:
             visit.tell(error_message(sim, error))
-            return self._sessions.open(sim, room, sim.params(), watching=watching)
+            return self._sessions.open(sim, room, sim.params(), watching=watching, address=visit.address)
 
     def _hear(self, read: Read, conversation: Conversation, visit: Visit) -> None:
         if read.trouble:

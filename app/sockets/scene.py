@@ -13,7 +13,8 @@ from typing import Any
 import viser
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from app.rooms.registry import Full, Sessions
+from app.rooms.places import Full
+from app.rooms.registry import Sessions
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Commands
 from app.sockets.inbox import Ended, Inbox, Read, Strangers
@@ -106,6 +107,8 @@ class SceneSockets:
         if link.visit.watching and message.commands:
             self._refusals["watching"] += 1
         else:
+            if (session := self._sessions.find(link.visit.sim, link.visit.room)) is not None:
+                session.touch()
             wire.feed(read.data, message.value_of)
 
     async def _on_connect(self, client: viser.ClientHandle) -> None:
@@ -133,7 +136,7 @@ class SceneSockets:
         hello = visit.hello.result() if visit.hello.done() else SILENT
         # A page whose first message is late may still bring its state.
         silent = visit.watching or not visit.hello.done()
-        session = self._sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent)
+        session = self._sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent, address=visit.address)
         commands = Commands(session, lambda message: visit.tell(message))
         link.viewer = visit.viewer = Viewer(visit.sim, client, commands, dark=hello.dark, watching=visit.watching)
         session.join(link.viewer)

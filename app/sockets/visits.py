@@ -26,6 +26,10 @@ from sims.kit.viewer import Viewer
 log = logging.getLogger("sim3")
 WRONG_ORIGIN = 4403
 """Code with which a websocket is closed whose page comes from elsewhere, as far as the server can see."""
+IDLE = 4408
+"""Code for a page in whose room nobody has done anything for long."""
+RESTARTS = 1012
+"""Code for a page whose server ends."""
 MOST_WARNINGS = 100
 """Different refusals that the log tells of."""
 
@@ -38,7 +42,9 @@ class Visit:
     room: str
     watching: bool
     name: str = ""
-    sockets: int = 0
+    address: str = ""
+    """Of the page's machine, as far as proxies tell."""
+    sockets: set[WebSocket] = field(default_factory=set)
     viewer: Viewer | None = None
     tell: Answer = lambda message: None
     """Says something on the channel, once there is one."""
@@ -55,6 +61,7 @@ class Visits:
         self._further = {origins.parse(text) for text in further.split()}
         self._open: dict[str, Visit] = {}
         self.warned: set[str] = set()
+        self._closing: set[asyncio.Future[None]] = set()
 
     def __len__(self) -> int:
         return len(self._open)
@@ -64,16 +71,29 @@ class Visits:
         """The visit that a socket belongs to; the first of its two sockets begins it, the last one ends it."""
         name = ws.query_params.get("viewer", "")
         name = f"{sim.slug}/{room}/{watching}/{name}" if re.fullmatch(r"[a-z0-9]{8,40}", name) else ""
-        visit = self._open.get(name) or Visit(sim, room, watching, name)
-        if name:
-            self._open[name] = visit
-        visit.sockets += 1
+        visit = self._open.get(name) or Visit(sim, room, watching, name, ws.client.host if ws.client else "")
+        self._open[name or str(id(visit))] = visit
+        visit.sockets.add(ws)
         try:
             yield visit
         finally:
-            visit.sockets -= 1
+            visit.sockets.discard(ws)
             if not visit.sockets:
-                self._open.pop(visit.name, None)
+                self._open.pop(name or str(id(visit)), None)
+
+    def put_away(self, sim: Sim[Any, Any], room: str) -> None:
+        """Close the pages of a room in which nobody does anything; they wait until somebody does."""
+        self._hang_up([each for each in self._open.values() if each.sim is sim and each.room == room], IDLE)
+
+    def send_elsewhere(self) -> None:
+        """Close all pages, which then look for another server, or for this one begun anew."""
+        self._hang_up([*self._open.values()], RESTARTS)
+
+    def _hang_up(self, visits: list[Visit], code: int) -> None:
+        for ws in [ws for visit in visits for ws in visit.sockets]:
+            closing = asyncio.ensure_future(close(ws, code))
+            self._closing.add(closing)
+            closing.add_done_callback(self._closing.discard)
 
     async def may(self, ws: WebSocket, protocol: str | None = None) -> bool:
         """Whether the page may open a websocket; if not, it is told why. The key in the path is the secret.

@@ -2,6 +2,7 @@
 import { reduced, sim } from "./page.js";
 
 const FIRST = 250;
+const IDLE = 4408; // nobody has done anything for long
 const LAST = 1500; // within the time that the server waits before it draws
 const INPUTS = new Set(["slide", "enter", "handle", "action", "select", "set"]); // what changes the state
 
@@ -17,6 +18,11 @@ export class Channel {
     this.retryAfter = FIRST;
   }
 
+  // Somebody is there again.
+  wake() {
+    if (!this.socket) this.open();
+  }
+
   open() {
     this.socket = new WebSocket(`${sim.socket}channel?viewer=${sim.viewer}`);
     this.socket.onopen = () => {
@@ -27,6 +33,7 @@ export class Channel {
     this.socket.onclose = (event) => {
       this.socket = null;
       this.lost(event.code, event.reason);
+      if (event.code === IDLE) return; // until somebody is there again
       setTimeout(() => this.open(), this.retryAfter);
       this.retryAfter = Math.min(this.retryAfter * 2, LAST);
     };

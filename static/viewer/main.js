@@ -28,7 +28,7 @@ class Page {
       () => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why), ({ name }) => this.goOn(name),
     );
     this.words = new Words();
-    this.trouble = new Trouble();
+    this.trouble = new Trouble(() => this.channel.wake());
     this.work = new Work(() => this.channel.send({ type: "cancel" }));
     this.pace = new Pace(this.channel);
     this.highlight = new Highlight(this.channel);

@@ -3,9 +3,12 @@ import { element, scene, sim } from "./page.js";
 
 const PATIENCE = 5000;
 const REFUSED = 4403; // the server says what is wrong with what it saw
+const IDLE = 4408; // nobody has done anything for long
 
 export class Trouble {
-  constructor() {
+  // `wake()` goes on after a rest.
+  constructor(wake) {
+    this.wake = wake;
     this.missing = 0;
     this.why = "";
     this.known = false; // whether there ever was a state
@@ -13,8 +16,24 @@ export class Trouble {
 
   lost(code, reason) {
     this.why = (code === REFUSED && reason) || this.why;
-    if (code === REFUSED && reason) this.show();
+    if (code === IDLE) this.rest();
+    else if (code === REFUSED && reason) this.show();
     else this.missing ||= setTimeout(() => this.show(), PATIENCE);
+  }
+
+  // The server has put the room away; whoever comes back goes on where they were.
+  rest() {
+    sim.resting = true;
+    const box = element("section", { class: "s3-trouble", role: "alert" });
+    element("h2", {}, box).textContent = "Paused";
+    element("p", {}, box).textContent = "Nobody has done anything here for a while. Touch anything to go on where you were.";
+    const on = new AbortController();
+    const wake = () => {
+      on.abort();
+      sim.resting = false;
+      this.wake();
+    };
+    for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, wake, { signal: on.signal, capture: true });
   }
 
   // The browser draws no 3D; the rest works.

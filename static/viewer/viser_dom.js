@@ -29,7 +29,7 @@ export function prepare(view, looked, blind) {
   const replace = history.replaceState.bind(history);
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
   // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
-  document.hasFocus = () => document.visibilityState === "visible";
+  document.hasFocus = () => document.visibilityState === "visible" && !sim.resting;
   noticeBlindness(blind);
   keepKeys();
   freeFingers();

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
+import threading
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, Self
@@ -62,6 +63,12 @@ class Local:
     def refused(self, why: str, more_than: int = 0) -> None:
         """Wait until the bridge has refused something for a reason more often than so many times."""
         wait_for(lambda: self.refusals[why] > more_than, f"a refusal because of {why}; there were {self.refusals}")
+
+    def sweep(self) -> None:
+        """Look now at which sessions can go."""
+        done = threading.Event()
+        self._host.loop.call_soon_threadsafe(lambda: (self.services.sessions.sweep(), done.set()))
+        assert done.wait(PATIENCE)
 
     def close(self) -> None:
         self.http.close()

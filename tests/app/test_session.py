@@ -20,7 +20,8 @@ from pydantic import ValidationError
 
 from app.rooms import drawing, motion, registry, telling
 from app.rooms.keys import new_key, room_of
-from app.rooms.registry import Full, Sessions
+from app.rooms.places import Full
+from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from app.rooms.solver import workers
 from app.routes.links import controls

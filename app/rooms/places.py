@@ -1,0 +1,79 @@
+"""Who has how many of a server's rooms: one address, which may be a whole school's, doesn't take all of them."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from ipaddress import IPv6Address, ip_address
+from time import monotonic
+from typing import Protocol
+
+REMEMBERED = 10_000
+"""Addresses whose openings are remembered."""
+MINUTE = 60.0
+
+
+class Full(RuntimeError):
+    """No more sessions fit; `wait` are the seconds after which it is worth another try."""
+
+    def __init__(self, words: str = "All places on this server are taken.", wait: int = 20) -> None:
+        super().__init__(words)
+        self.wait = wait
+
+
+class Place(Protocol):
+    """What is known of a room that is open."""
+
+    opener: str
+
+
+def neighbourhood(address: str) -> str:
+    """The part of an address that one household or school has: of IPv6, the first half. Empty for what is none."""
+    try:
+        ip = ip_address(address.partition("%")[0])
+    except ValueError:
+        return ""
+    if not isinstance(ip, IPv6Address):
+        return str(ip)
+    if (v4 := ip.ipv4_mapped) is not None:
+        return str(v4)
+    return str(IPv6Address(int(ip) >> 64 << 64))
+
+
+@dataclass
+class Openings:
+    """The rooms that one address may still open just now."""
+
+    left: float
+    at: float
+
+
+class Fairness:
+    """At most `each` rooms for an address at once, and `a_minute` new ones a minute, all at once if need be."""
+
+    def __init__(self, each: int, a_minute: int) -> None:
+        self._each = each
+        self._a_minute = a_minute
+        self._openings: OrderedDict[str, Openings] = OrderedDict()
+
+    def may_open(self, opener: str, places: Iterable[Place]) -> None:
+        """Count one in. Raises `Full` in words. Who has no address, as on a socket of this machine, always may."""
+        if not opener:
+            return
+        if sum(place.opener == opener for place in places) >= self._each:
+            raise Full(f"Your network has {self._each} sims open on this server already, as many as one may.")
+        self._count(opener)
+
+    def _count(self, opener: str) -> None:
+        now, rate = monotonic(), self._a_minute / MINUTE
+        known = self._openings.pop(opener, None) or Openings(self._a_minute, now)
+        known.left = min(known.left + (now - known.at) * rate, self._a_minute)
+        known.at = now
+        self._openings[opener] = known
+        if len(self._openings) > REMEMBERED:
+            self._openings.popitem(last=False)
+        if known.left < 1.0:
+            words = f"Your network has opened {self._a_minute} sims within a minute, as many as one may."
+            raise Full(words, wait=max(1, round((1.0 - known.left) / rate)))
+        known.left -= 1.0

@@ -1,0 +1,124 @@
+"""What those see who watch a server, and how it ends."""
+
+from __future__ import annotations
+
+import io
+import json
+import logging
+import re
+from typing import Any
+
+import httpx
+import kubernetes_validate
+import pytest
+import yaml
+from prometheus_client.parser import text_string_to_metric_families
+from websockets.exceptions import InvalidStatus
+
+from app import logs
+from app.settings import Settings
+from tests.app.conftest import Local
+from tests.app.page import SLUG, Page, closed, connect
+from tests.server import PATIENCE, ROOT, Server, wait_for
+
+KUBERNETES = "1.33"
+DASHBOARD = ROOT / "deploy" / "dashboard.json"
+
+
+def measured(local: Local) -> dict[tuple[str, str], float]:
+    """Every sample by its name and the values of its labels."""
+    text = local.http.get("/metrics").text
+    return {
+        (sample.name, " ".join(value for name, value in sample.labels.items() if name != "le")): sample.value
+        for family in text_string_to_metric_families(text)
+        for sample in family.samples
+    }
+
+
+def test_metrics_count_what_happens() -> None:
+    with Local() as local:
+        before = measured(local)
+        with Page(local.url) as page:
+            page.works()
+            during = measured(local)
+        assert during["sim3_sessions", SLUG] == before["sim3_sessions", SLUG] + 1
+        assert during["sim3_viewers", SLUG] == 1
+        assert during["sim3_pages", ""] == 1
+        updates = ("sim3_update_seconds_count", SLUG)
+        assert during[updates] > before.get(updates, 0)
+        assert during["process_resident_memory_bytes", ""] > 1e7
+        with pytest.raises(InvalidStatus):
+            connect(f"{local.url}/sims/{SLUG}/s/{'0' * 20}/wrong/channel", viser=False)
+        assert measured(local)["sim3_refused_total", "address"] == 1
+
+
+def test_the_dashboard_asks_for_what_there_is() -> None:
+    with Local() as local, Page(local.url) as page:
+        page.works()
+        known = {name for name, _ in measured(local)}
+    asked = re.findall(r"\b((?:sim3|process|python)_\w+)", DASHBOARD.read_text())
+    assert len({*asked}) > 8
+    assert {*asked} <= known | {"sim3_refused_total", "sim3_failures_total", "sim3_uploads_total"}, {*asked} - known
+
+
+def test_no_label_says_who() -> None:
+    with Local() as local, Page(local.url) as page:
+        text = local.http.get("/metrics").text
+        assert str(page.key) not in text
+        assert page.room not in text
+        assert "127.0.0.1" not in text
+
+
+def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -> None:
+    with Server(SIM3_DRAIN_SECONDS="8") as server, Page(server.url) as page:
+        with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as http:
+            assert http.get("/readyz").status_code == 200
+            server.send_end()
+            wait_for(lambda: http.get("/readyz").status_code == 503, "the server to say that it ends")
+            refused = http.get(f"/sims/{SLUG}/embed")
+            assert (refused.status_code, refused.headers["retry-after"]) == (503, "2")
+            assert "restarted" in refused.text
+            page.works()
+        server.send_end()  # asked for the second time, it ends at once
+        assert closed(page.channel) == 1012
+
+
+def test_json_lines_say_the_same_and_nothing_secret() -> None:
+    out = io.StringIO()
+    handler = logging.StreamHandler(out)
+    handler.setFormatter(logs.Json())
+    log = logging.Logger("sim3")
+    log.addHandler(handler)
+    try:
+        raise ZeroDivisionError("by the seed")
+    except ZeroDivisionError:
+        log.exception("drawing %s failed in the state %s", "camera", "fx=300")
+    (line,) = out.getvalue().splitlines()
+    said = json.loads(line)
+    assert said["level"] == "error"
+    assert said["message"] == "drawing camera failed in the state fx=300"
+    assert "ZeroDivisionError: by the seed" in said["traceback"]
+
+
+def manifests() -> list[dict[str, Any]]:
+    return [*yaml.safe_load_all((ROOT / "deploy" / "kubernetes" / "sim3.yaml").read_text())]
+
+
+@pytest.mark.parametrize("manifest", manifests(), ids=lambda each: f"{each['kind']} {each['metadata']['name']}")
+def test_manifests_are_what_kubernetes_takes(manifest: dict[str, Any]) -> None:
+    kubernetes_validate.validate(manifest, KUBERNETES, strict=True)
+
+
+def test_manifests_ask_for_what_there_is() -> None:
+    deployment, *others = manifests()
+    (container,) = deployment["spec"]["template"]["spec"]["containers"]
+    settings = {f"SIM3_{name.upper()}" for name in Settings.model_fields} | {"FORWARDED_ALLOW_IPS"}
+    assert {each["name"] for each in container["env"]} <= settings
+    seconds = next(float(each["value"]) for each in container["env"] if each["name"] == "SIM3_DRAIN_SECONDS")
+    assert seconds < deployment["spec"]["template"]["spec"]["terminationGracePeriodSeconds"] - 10
+    with Local() as local:
+        for probe in ("readinessProbe", "livenessProbe"):
+            assert local.http.get(container[probe]["httpGet"]["path"]).status_code == 200
+        (scaled,) = (each for each in others if each["kind"] == "HorizontalPodAutoscaler")
+        (metric,) = scaled["spec"]["metrics"]
+        assert metric["pods"]["metric"]["name"] in {name for name, _ in measured(local)}
