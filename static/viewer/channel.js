@@ -1,8 +1,7 @@
 // The channel to the server: JSON both ways. It is opened anew whenever it breaks off.
-import { reduced, sim } from "./page.js";
+import { IDLE, reduced, sim } from "./page.js";
 
 const FIRST = 250;
-const IDLE = 4408; // nobody has done anything for long
 const LAST = 1500; // within the time that the server waits before it draws
 const INPUTS = new Set(["slide", "enter", "handle", "action", "select", "set"]); // what changes the state
 

@@ -2,6 +2,7 @@
 export const sim = window.sim3;
 export const Query = URLSearchParams;
 export const embedded = window.parent !== window;
+export const IDLE = 4408; // code of a websocket in whose room nobody has done anything for long
 export const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 export const column = document.querySelector(".s3-column");
 export const scene = document.querySelector(".s3-scene");

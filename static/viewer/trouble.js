@@ -1,9 +1,8 @@
 // No connection: after a while in words, for whoever runs the server.
-import { element, scene, sim } from "./page.js";
+import { element, IDLE, scene, sim } from "./page.js";
 
 const PATIENCE = 5000;
 const REFUSED = 4403; // the server says what is wrong with what it saw
-const IDLE = 4408; // nobody has done anything for long
 
 export class Trouble {
   // `wake()` goes on after a rest.

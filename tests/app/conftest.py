@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
-import threading
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, Self
@@ -66,9 +65,11 @@ class Local:
 
     def sweep(self) -> None:
         """Look now at which sessions can go."""
-        done = threading.Event()
-        self._host.loop.call_soon_threadsafe(lambda: (self.services.sessions.sweep(), done.set()))
-        assert done.wait(PATIENCE)
+
+        async def swept() -> None:
+            self.services.sessions.sweep()
+
+        asyncio.run_coroutine_threadsafe(swept(), self._host.loop).result(PATIENCE)
 
     def close(self) -> None:
         self.http.close()
