@@ -39,10 +39,7 @@ class Lesson:
 
     def data(self) -> list[dict[str, Any]]:
         """Its steps for the page: what the sim is set to at each."""
-        return [
-            {"id": step.id, "title": step.title, "words": step.words, **setting(step.state)}
-            for step in self.steps
-        ]
+        return [{"id": step.id, "title": step.title, "words": step.words, **setting(step.state)} for step in self.steps]
 
 
 def load(path: Path, name: str, sims: tuple[AnySim, ...], given: Callable[[AnySim], tuple[Library, ...]]) -> Lesson:
