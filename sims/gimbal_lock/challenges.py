@@ -30,8 +30,10 @@ def _both_ends(p: GimbalParams, s: GimbalSolution) -> Progress:
 
 
 def _half(p: GimbalParams, s: GimbalSolution) -> Progress:
-    left = abs(s.singular_values.item(2) - HALF)
-    return nearer(left, HALF, 0.005, f"{quantity(s.singular_values.item(2))} is not yet half", "Half of what it was")
+    least = s.singular_values.item(2)
+    left = abs(least - HALF)
+    side = "over" if least > HALF else "below"
+    return nearer(left, HALF, 0.005, f"{quantity(least)}: {quantity(left)} {side} the half", "Half of what it was")
 
 
 CHALLENGES: tuple[Challenge[GimbalParams, GimbalSolution], ...] = (
