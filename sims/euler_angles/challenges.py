@@ -6,7 +6,7 @@ import math
 
 from geometry.euler import euler_to_matrix
 from geometry.rotations import rotation_angle
-from sims.euler_angles.params import EulerParams
+from sims.euler_angles.params import TARGET, EulerParams
 from sims.euler_angles.solution import EulerSolution
 from sims.kit.challenge import Challenge, Progress, nearer
 from sims.kit.readout import quantity
@@ -21,6 +21,8 @@ QUARTERS = euler_to_matrix((math.pi / 2, 0.0, math.pi / 2), "zyx", "intrinsic")
 def _target(p: EulerParams, s: EulerSolution) -> Progress:
     if s.target is None:
         return Progress(0.0, "Show the target first: there is a switch for it among the controls.")
+    if p.target != TARGET:
+        return Progress(0.1, "The target that is shown is another one.")
     left = s.target.angle
     return nearer(left, 180.0, CLOSE, f"{quantity(left, '°', 0)} to go", "The aircraft covers its target")
 
@@ -47,6 +49,7 @@ CHALLENGES: tuple[Challenge[EulerParams, EulerSolution], ...] = (
         misses=(
             {"show_target": True, "yaw": 120, "pitch": -40, "roll": 55},
             {"show_target": True, "yaw": 60, "pitch": -40, "roll": 120},
+            {"show_target": True, "target": (30, 20, 10), "yaw": 30, "pitch": 20, "roll": 10},
         ),
     ),
     Challenge(

@@ -11,6 +11,8 @@ from sims.kit.fields import Choice, Slider, Switch, Vector
 from sims.kit.params import Params
 
 Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz"]
+TARGET = (120.0, -40.0, 60.0)
+"""Yaw, pitch and roll of an orientation to reach that one doesn’t hit by chance."""
 NEAR_LOCK = 15.0
 """Degrees from lock within which the sim warns."""
 
@@ -37,7 +39,7 @@ class EulerParams(Params):
     """A second aircraft, in an orientation that is to be reached"""
     target: Annotated[
         tuple[float, float, float], Vector(-180.0, 180.0, step=1, unit="°", title="Target", hidden=True)
-    ] = (120.0, -40.0, 60.0)
+    ] = TARGET
     """Yaw, pitch and roll of the target, as ZYX about own axes"""
 
     @property

@@ -7,7 +7,7 @@ from sims.gimbal_lock.solution import GimbalSolution
 from sims.kit.challenge import Challenge, Progress, nearer
 from sims.kit.readout import quantity
 
-APART = 20.0
+APART = 45.0
 """Degrees by which two settings must differ to be two."""
 HALF = 0.5
 
@@ -40,10 +40,10 @@ CHALLENGES: tuple[Challenge[GimbalParams, GimbalSolution], ...] = (
     Challenge(
         id="same-orientation", title="Two settings, one orientation",
         goal="Mark an orientation, then find other angles of the outer and inner ring that give the same one.",
-        near=_same_orientation, solves={"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
+        near=_same_orientation, solves={"pitch": 90, "yaw": 60, "roll": 60, "show_ghost": True, "ghost": (0, 90, 0)},
         misses=(
-            {"pitch": 90, "yaw": 40, "roll": 38, "show_ghost": True, "ghost": (0, 90, 0)},
-            {"pitch": 90, "yaw": 5, "roll": 5, "show_ghost": True, "ghost": (0, 90, 0)},
+            {"pitch": 90, "yaw": 60, "roll": 58, "show_ghost": True, "ghost": (0, 90, 0)},
+            {"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
         ),
     ),
     Challenge(
