@@ -23,13 +23,13 @@ ALONG = 1.0
 
 
 def _mirrored_pair(p: FramesParams, s: FramesSolution) -> Progress:
-    if s.axes is not axes(p.convention):
-        return Progress(0.5, "These axes were mirrored by hand. Look for two conventions as they are.")
+    if p.convention != "ros":
+        return Progress(0.0, "Choose ROS as the first convention.")
+    if s.axes is not axes("ros"):
+        return Progress(0.4, "These axes were mirrored by hand. Look for two conventions as they are.")
     if s.determinant < 0.0:
         return Progress(1.0, "det T = −1: no turn leads from one to the other")
-    if p.convention == p.to:
-        return Progress(0.0, "One convention twice: T turns nothing.")
-    return Progress(0.3, "det T = 1: a turn leads from one to the other. Look at the hand of each.")
+    return Progress(0.4, "det T = 1: a turn leads from one to the other. Look at the hand of each.")
 
 
 def _ros_reads(p: FramesParams, s: FramesSolution) -> Progress:
@@ -58,9 +58,12 @@ def _direction_back(p: FramesParams, s: FramesSolution) -> Progress:
 CHALLENGES: tuple[Challenge[FramesParams, FramesSolution], ...] = (
     Challenge(
         id="mirrored-pair", title="Two worlds that no turn joins",
-        goal="Find two conventions whose matrix T has the determinant −1.",
-        near=_mirrored_pair, solves={"to": "directx"},
-        misses=({"convention": "ros", "to": "camera"}, {"convention": "ros", "handedness": "left", "to": "camera"}),
+        goal="Find a convention to which no turn leads from ROS: det T = −1.",
+        near=_mirrored_pair, solves={"convention": "ros", "to": "unreal"},
+        misses=(
+            {"convention": "ros", "to": "camera"}, {"to": "directx"},
+            {"convention": "ros", "handedness": "left", "to": "camera"},
+        ),
     ),
     Challenge(
         id="ros-reads", title="Say it in ROS",
