@@ -32,7 +32,8 @@ def solved(sim: AnySim, params: Params) -> tuple[Params, Any]:
 
 def opening(sim: AnySim) -> Params:
     """What a link without parameters opens."""
-    return sim.params(**sim.params.opening)
+    params: Params = sim.params(**sim.params.opening)
+    return params
 
 
 def at(sim: AnySim, challenge: AnyChallenge, changes: Mapping[str, Any]) -> Progress:

@@ -45,7 +45,7 @@ def test_at_both_ends_one_combination_is_left(p: GimbalParams) -> None:
     yaw, _, roll = map(math.radians, p.angles)
     for end in (1, -1):
         c, s = math.cos(yaw - end * roll), math.sin(yaw - end * roll)
-        R = [[0, -s, end * c], [0, c, end * s], [-end, 0, 0]]
+        R = np.array([[0.0, -s, end * c], [0.0, c, end * s], [-end, 0.0, 0.0]])
         np.testing.assert_allclose(solve(p.changed({"pitch": 90 * end})).R, R, atol=1e-12)
 
 
