@@ -11,6 +11,8 @@ from app.lessons.dialect import LIVE
 
 POINT = re.compile(r"\\point\{([^{}]+)\}\{((?:[^{}]|\{[^{}]*\})*)\}")
 """A symbol and what it points at, as in \\point{yaw}{\\psi}."""
+MATRIX = re.compile(r"\\(begin|end)\{[pb]matrix\}")
+"""Brackets are drawn as borders, as in the column of a sim: few machines have a font whose brackets stretch."""
 _COLOUR = "#5133{:02x}"  # marks what points, for MathML has nothing that LaTeX could say it by
 _COLOURED = re.compile(r'<mstyle mathcolor="#5133(..)">')
 
@@ -28,15 +30,17 @@ def mathml(latex: str, *, block: bool, live: Callable[[str], str]) -> str:
 
     def pointed(found: re.Match[str]) -> str:
         names.append(found[1])
-        return rf"\color{{{_COLOUR.format(len(names) - 1)}}}{{{found[2]}}}"
+        return rf"{{\color{{{_COLOUR.format(len(names) - 1)}}}{{{found[2]}}}}}"  # without braces, all that follows
 
-    plain = LIVE.sub(value, POINT.sub(pointed, latex))
+    plain = MATRIX.sub(r"\\\1{matrix}", LIVE.sub(value, POINT.sub(pointed, latex)))
     try:
         made = convert(plain, display="block" if block else "inline")
     except Exception as error:  # whatever the converter stumbles over
         raise ValueError(f"{latex!r} ({type(error).__name__})") from None
     if unknown := re.search(r"\\[A-Za-z]+", made):
         raise ValueError(f"{unknown[0]} in {latex!r}")
+    if MATRIX.search(latex):
+        made = made.replace("<mtable>", '<mtable class="matrix">')
     made = re.sub(r"<mtext>@(\d+)@</mtext>", lambda found: live(values[int(found[1])]), made)
     return _COLOURED.sub(lambda found: f'<mstyle data-point="{names[int(found[1], 16)]}">', made)
 

@@ -6,6 +6,7 @@ The world is a car on a floor: right, forward, up. It never moves; a convention 
 from __future__ import annotations
 
 from sims.coordinate_frames import actions
+from sims.coordinate_frames.challenges import CHALLENGES
 from sims.coordinate_frames.params import GRIDS, FramesParams
 from sims.coordinate_frames.readouts import ALL, AXES, HOMOGENEOUS, caption, describe, readouts
 from sims.coordinate_frames.scene import FramesScene, seen
@@ -41,6 +42,7 @@ SIM = Sim(
     ),
     handles={"/point": actions.hold_point, "/second": actions.hold_origin},
     eases=actions.turn,
+    challenges=CHALLENGES,
     states={
         "left-handed OpenGL": {"convention": "opengl", "handedness": "left", "show_rule": True},
         "own handedness, said": {"handedness": "right", "to": "ros"},

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from sims.euler_angles import recognise
 from sims.euler_angles.actions import HANDLES, animate, take
+from sims.euler_angles.challenges import CHALLENGES
 from sims.euler_angles.params import EulerParams
 from sims.euler_angles.readouts import FACTORS, FORMS, caption, describe, readouts
 from sims.euler_angles.scene import EulerScene
@@ -51,6 +52,7 @@ SIM = Sim(
         says=lambda _, found: f"Read as {found['what']}. It is there in all forms under “{FORMS}”.",
     ),
     actions=(Action("animate", "Animate sequence", "Make the three turns one after another", animate),),
+    challenges=CHALLENGES,
     states={
         "zero": {"yaw": 0, "pitch": 0, "roll": 0},
         "lock up": {"pitch": 90},
@@ -60,6 +62,7 @@ SIM = Sim(
         "middle is yaw": {"order": "xzy", "yaw": 90},
         "extrinsic": {"frame": "extrinsic", "order": "xyz", "progress": 1.5},
         "half-way": {"progress": 1.5},
+        "target": {"show_target": True},
     },
 )
 

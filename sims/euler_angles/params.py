@@ -7,10 +7,12 @@ from typing import Annotated, Literal
 from geometry import euler
 from sims.euler_angles import names
 from sims.euler_angles.names import TurnName
-from sims.kit.fields import Choice, Slider
+from sims.kit.fields import Choice, Slider, Switch, Vector
 from sims.kit.params import Params
 
 Order = Literal["zyx", "xyz", "zxz", "xzy", "yxz", "yzx", "zxy", "xyx", "xzx", "yxy", "yzy", "zyz"]
+TARGET = (120.0, -40.0, 60.0)
+"""Yaw, pitch and roll of an orientation to reach that one doesn’t hit by chance."""
 NEAR_LOCK = 15.0
 """Degrees from lock within which the sim warns."""
 
@@ -33,6 +35,12 @@ class EulerParams(Params):
     """Angle about X; third angle of a proper Euler order"""
     progress: Annotated[float, Slider(0, 3, step=0.01, title="Progress")] = 3
     """How much of the sequence is applied: 1 is the first turn, 3 all of it"""
+    show_target: Annotated[bool, Switch(title="Show target", group="Show")] = False
+    """A second aircraft, in an orientation that is to be reached"""
+    target: Annotated[
+        tuple[float, float, float], Vector(-180.0, 180.0, step=1, unit="°", title="Target", hidden=True)
+    ] = TARGET
+    """Yaw, pitch and roll of the target, as ZYX about own axes"""
 
     @property
     def proper(self) -> bool:
@@ -57,7 +65,7 @@ class EulerParams(Params):
 
     @property
     def arranged(self) -> tuple[str, ...]:
-        return "order", "frame", *self.names, "progress"
+        return "order", "frame", *self.names, "progress", "show_target"
 
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "pitch":

@@ -29,6 +29,8 @@ def caption(p: EulerParams, s: EulerSolution) -> str:
 def readouts(p: EulerParams, s: EulerSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _lock(p, s)
+    if s.target is not None:
+        yield Note(f"The target is {quantity(s.target.angle, '°', 1)} away.")
     yield Formula("The factors, in the order of the product", "", _factors(p, s))
     if p.progress < 3.0:
         yield Formula("What they make so far", _so_far(p), mathml(s.R_progress, roles=AXES))

@@ -19,6 +19,8 @@ from sims.kit.types import Place, Vector
 TIPS = (0.92, 0.94)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
+REACHED = 0.01
+"""Degrees from the aircraft within which the target hides in it."""
 ANCHORS = dict(zip(RADII, ("top-center", "bottom-left", "center-left"), strict=True))
 """The first label hangs lower, clear of the next one where the two arcs meet; the others stand beside their arcs."""
 
@@ -36,6 +38,9 @@ class EulerScene:
             stage.axes(parents[2], 1.15, radius=0.02, letters=("x", "y", "z")),
         ]
         stage.aircraft(parents[2])
+        self.target = stage.group("/target")
+        stage.aircraft("/target", ghost=(0.35, 0.35))
+        self.target_label = stage.label("/target/label", "", (-0.9, 0.0, 0.45))
         self.stage = stage
         self.befores = ["", *parents[:2]]
         self.arcs: list[Any] = []
@@ -57,6 +62,10 @@ class EulerScene:
             arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
         self.names = p.names
         self._hold(s, p.progress >= 3.0)
+        self.target.show(s.target is not None and s.target.angle > REACHED)
+        if s.target is not None:
+            self.target.pose(s.target.wxyz)
+            self.target_label.text(f"target, {quantity(s.target.angle, '°', 0)} away")
 
     def _hold(self, s: EulerSolution, whole: bool) -> None:
         """Put the grips where arcs, nose and wing end, where all turns are made."""

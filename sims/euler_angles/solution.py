@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry import euler, quaternion
 from geometry.arrays import Array
-from geometry.rotations import axis_rotation, matrix_to_axis_angle
+from geometry.rotations import axis_rotation, matrix_to_axis_angle, rotation_angle
 from sims.euler_angles.params import EulerParams
 from sims.kit.types import Quaternion
 
@@ -45,6 +45,14 @@ class Left:
 
 
 @dataclass(frozen=True)
+class Target:
+    """An orientation that is to be reached, and by how many degrees the aircraft, as it is drawn, is off it."""
+
+    wxyz: Quaternion
+    angle: float
+
+
+@dataclass(frozen=True)
 class EulerSolution:
     """R is the whole rotation; `R_progress` the part that is applied, which the aircraft shows.
 
@@ -65,6 +73,7 @@ class EulerSolution:
     turns: tuple[Turn, ...]
     arcs: tuple[Array, ...]
     ends: Array
+    target: Target | None
 
     def set_otherwise(self, p: EulerParams) -> bool:
         """Whether the angles that were set are another triple than the one that is read back."""
@@ -87,6 +96,7 @@ def solve(p: EulerParams) -> EulerSolution:
         radius * (arc[:, 0] * math.cos(a) + arc[:, 1] * math.sin(a))
         for radius, arc, a in zip(RADII, arcs, radians, strict=True)
     ]
+    part_made = R if p.progress >= 3.0 else euler.euler_to_matrix(applied, p.order, p.frame)
     return EulerSolution(
         R=R,
         factors=tuple({"axis": f.axis, "angle": math.degrees(float(f.angle)), "R": f.R} for f in product),
@@ -95,12 +105,18 @@ def solve(p: EulerParams) -> EulerSolution:
         lock_distance=distance,
         locked=bool(locked),
         left=_left(p, radians[1]) if locked else None,
-        R_progress=R if p.progress >= 3.0 else euler.euler_to_matrix(applied, p.order, p.frame),
+        R_progress=part_made,
         recovered={n: math.degrees(float(a)) for n, a in zip(p.names, recovered, strict=True)},
         turns=_turns(p, applied),
         arcs=arcs,
         ends=np.array(ends),
+        target=_target(p, part_made) if p.show_target else None,
     )
+
+
+def _target(p: EulerParams, R: Array) -> Target:
+    aim = euler.euler_to_matrix([math.radians(a) for a in p.target], "zyx", "intrinsic")
+    return Target(_floats(quaternion.from_matrix(aim)), math.degrees(float(rotation_angle(R.T @ aim))))
 
 
 def arc_frames(p: EulerParams) -> tuple[Array, ...]:

@@ -7,7 +7,7 @@ from sims.gimbal_lock.solution import GimbalSolution
 from sims.kit.challenge import Challenge, Progress, nearer
 from sims.kit.readout import quantity
 
-APART = 20.0
+APART = 45.0
 """Degrees by which two settings must differ to be two."""
 HALF = 0.5
 
@@ -30,18 +30,20 @@ def _both_ends(p: GimbalParams, s: GimbalSolution) -> Progress:
 
 
 def _half(p: GimbalParams, s: GimbalSolution) -> Progress:
-    left = abs(s.singular_values.item(2) - HALF)
-    return nearer(left, HALF, 0.005, f"{quantity(s.singular_values.item(2))} is not yet half", "Half of what it was")
+    least = s.singular_values.item(2)
+    left = abs(least - HALF)
+    side = "over" if least > HALF else "below"
+    return nearer(left, HALF, 0.005, f"{quantity(least)}: {quantity(left)} {side} the half", "Half of what it was")
 
 
 CHALLENGES: tuple[Challenge[GimbalParams, GimbalSolution], ...] = (
     Challenge(
         id="same-orientation", title="Two settings, one orientation",
         goal="Mark an orientation, then find other angles of the outer and inner ring that give the same one.",
-        near=_same_orientation, solves={"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
+        near=_same_orientation, solves={"pitch": 90, "yaw": 60, "roll": 60, "show_ghost": True, "ghost": (0, 90, 0)},
         misses=(
-            {"pitch": 90, "yaw": 40, "roll": 38, "show_ghost": True, "ghost": (0, 90, 0)},
-            {"pitch": 90, "yaw": 5, "roll": 5, "show_ghost": True, "ghost": (0, 90, 0)},
+            {"pitch": 90, "yaw": 60, "roll": 58, "show_ghost": True, "ghost": (0, 90, 0)},
+            {"pitch": 90, "yaw": 40, "roll": 40, "show_ghost": True, "ghost": (0, 90, 0)},
         ),
     ),
     Challenge(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -46,6 +47,7 @@ class GimbalSolution:
     """
 
     R: Array
+    axis_angle: dict[str, Any]
     axes: Array
     singular_values: Array
     dof: int
@@ -83,8 +85,10 @@ def solve(p: GimbalParams) -> GimbalSolution:
     weakest = directions[:, 2]
     lock = gimbal.at_lock(yaw, pitch, roll)
     axes = gimbal.ring_axes(yaw, pitch)
+    axis, angle = matrix_to_axis_angle(R)
     return GimbalSolution(
         R=R,
+        axis_angle={"axis": axis, "angle": math.degrees(float(angle))},
         axes=axes,
         singular_values=lengths,
         dof=int(gimbal.degrees_of_freedom(lengths)),

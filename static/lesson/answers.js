@@ -54,14 +54,14 @@ export class Answers {
     });
   }
 
-  // Solved once is solved.
+  // Solved once is solved, by a learner: what the text itself shows or passes on its way is nobody's.
   challenge({ id, solved, progress, words }) {
     const box = document.querySelector(`[data-challenge="${CSS.escape(id)}"]`);
     if (!box || box.dataset.solved) return;
     box.querySelector("progress").value = progress;
     const near = box.querySelector(".near");
     if (near.textContent !== words) near.textContent = words;
-    if (solved) box.dataset.solved = "1";
+    if (solved && this.steps.taken) box.dataset.solved = "1";
   }
 }
 

@@ -288,6 +288,22 @@ def test_another_triple_that_is_read_back_is_said_to_be_the_same_rotation(
     assert not (said and solution.locked)
 
 
+def test_target_is_where_its_angles_say_until_the_aircraft_covers_it(rig: Rig) -> None:
+    p = state(show_target=True, target=(-50.0, 60.0, 70.0), progress=1.5)
+    rig.show(p)
+    aim = Rotation.from_euler("ZYX", p.target, degrees=True)
+    np.testing.assert_allclose(rig.model.world_pose("/target")[:3, :3], aim.as_matrix(), rtol=0, atol=1e-9)
+    solution = solve(p)
+    away = math.degrees((aim * Rotation.from_matrix(solution.R_progress).inv()).magnitude())
+    assert solution.target is not None
+    assert solution.target.angle == pytest.approx(away)
+    assert f"The target is {away:.1f}° away" in shown(p)
+    assert rig.model.visible("/target")
+    for hidden in (state(show_target=True, target=p.angles), state()):
+        rig.show(hidden)
+        assert not rig.model.visible("/target")
+
+
 def test_yaw_in_the_middle_beyond_90_is_read_back_otherwise() -> None:
     p = state("xzy", yaw=120.0)
     assert "yaw ψ 60.00°" in shown(p)
