@@ -7,6 +7,7 @@ the point is in one picture, it must be on that line in the other. F says so in 
 from __future__ import annotations
 
 from sims.epipolar import actions, calibration, candidate, plan, ray
+from sims.epipolar.challenges import CHALLENGES
 from sims.epipolar.panes import panes
 from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, OWN, EpipolarParams
 from sims.epipolar.readouts import LINES, MATRICES, POINTS, caption, describe, readouts
@@ -83,6 +84,7 @@ SIM = Sim(
         OWN, "Calibration of two cameras", "K1, K2, R and T as OpenCV, Kalibr’s camchain, or both ROS files have them",
         calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".txt"),
     ),
+    challenges=CHALLENGES,
     states={
         "own pair": {"own": tuple(calibration.read(calibration.EXAMPLE)), "own_left": (300.0, 200.0)},
         "converging": {**actions.PRESETS["converging"], "show_all_lines": True, "points": 12},
