@@ -7,6 +7,7 @@ the point is in one picture, it must be on that line in the other. F says so in 
 from __future__ import annotations
 
 from sims.epipolar import actions, calibration, candidate, plan, ray
+from sims.epipolar.challenges import CHALLENGES
 from sims.epipolar.offers import EpipolarOffers
 from sims.epipolar.panes import panes
 from sims.epipolar.params import CAMERAS, ESTIMATE, ESTIMATE_ACTION, OWN, EpipolarParams
@@ -86,6 +87,7 @@ SIM = Sim(
         calibration.says,
     ),
     offers=EpipolarOffers,
+    challenges=CHALLENGES,
     states={
         "own pair": {
             **calibration.changes(EpipolarParams(), calibration.read(calibration.EXAMPLE)),

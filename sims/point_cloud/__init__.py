@@ -7,6 +7,7 @@ from functools import partial
 from sims.kit.sim import Action, Contract, Files, Objective, Sim
 from sims.point_cloud import actions
 from sims.point_cloud.captions import caption
+from sims.point_cloud.challenges import CHALLENGES
 from sims.point_cloud.datasets import DATASETS, dataset
 from sims.point_cloud.download import ply
 from sims.point_cloud.files import FORMATS
@@ -48,6 +49,7 @@ SIM = Sim(
     ),
     handles={"/second": actions.hold},
     clicks={"/cloud": actions.pick},
+    challenges=CHALLENGES,
     states={
         "street": {"dataset": "street", "color": "intensity"},
         "street without colours": {"dataset": "street", "color": "rgb"},

@@ -11,6 +11,7 @@ from sims.kit.sim import Action, Contract, Objective, Sim, Typed
 from sims.kit.view import View
 from sims.triangulation import actions, calibration
 from sims.triangulation.captions import caption
+from sims.triangulation.challenges import CHALLENGES
 from sims.triangulation.panes import panes
 from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, RIG, SURENESS, TriangulationParams
 from sims.triangulation.readouts import EQUATIONS, METHODS, describe, readouts
@@ -68,6 +69,7 @@ SIM = Sim(
             NEAREST, FARTHEST, actions.held_point,
         ),
     ),
+    challenges=CHALLENGES,
     states={
         "rays miss": {"right_uv": (320, 222), "method": "optimal"},
         "noise": {"noise": 1.0, "seed": 3},

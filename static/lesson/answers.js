@@ -57,7 +57,7 @@ export class Answers {
   // Solved once is solved, by a learner: what the text itself shows or passes on its way is nobody's.
   challenge({ id, solved, progress, words }) {
     const box = document.querySelector(`[data-challenge="${CSS.escape(id)}"]`);
-    if (!box || box.dataset.solved) return;
+    if (!box || box.dataset.solved || (solved && this.steps.gliding)) return;
     box.querySelector("progress").value = progress;
     const near = box.querySelector(".near");
     if (near.textContent !== words) near.textContent = words;

@@ -55,6 +55,11 @@ export class Steps {
     this.offer();
   }
 
+  // Whether the text moves the sim: what it passes on the way is nobody's doing.
+  get gliding() {
+    return !this.arrived && performance.now() < this.until;
+  }
+
   go(state, seconds) {
     this.wanted = state.query;
     this.arrived = this.query === state.query;
