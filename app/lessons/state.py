@@ -36,7 +36,7 @@ class State:
 
     @cached_property
     def solution(self) -> Any:
-        """Of the parameters."""
+        """What follows from the parameters."""
         return self.sim.solve(self.params, *self.library)
 
     @cached_property

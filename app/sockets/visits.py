@@ -43,7 +43,7 @@ class Visit:
     watching: bool
     name: str = ""
     address: str = ""
-    """Of the page's machine, as far as proxies tell."""
+    """The page's machine, as far as proxies tell."""
     sockets: set[WebSocket] = field(default_factory=set)
     viewer: Viewer | None = None
     tell: Answer = lambda message: None
