@@ -27,17 +27,11 @@ export class Frame {
   }
 
   take(data) {
-    switch (data?.type) {
-      case "sim3:state":
-        this.takeState(data);
-        break;
-      case "sim3:ready":
-      case "sim3:drawn":
-        this.ask();
-        break;
-      case "sim3:challenge":
-        this.tell("challenge", data);
-    }
+    const type = String(data?.type).replace("sim3:", "");
+    if (type === "state") this.takeState(data);
+    else if (type === "drawn") this.ask();
+    else if (type === "ready") this.askAnew();
+    if (["ready", "challenge", "touched", "error", "picture"].includes(type)) this.tell(type, data);
   }
 
   takeState({ params, query, solution }) {
@@ -57,9 +51,26 @@ export class Frame {
     this.post({ type: "sim3:get", solution: true });
   }
 
+  // What was asked before the sim was ready, it never heard.
+  askAnew() {
+    this.asked = -ANSWERED;
+    this.ask();
+  }
+
   // What a step, a link or a question names: `seconds` to glide there.
   set({ params, view }, seconds) {
     this.post({ type: "sim3:set", params, ...(seconds ? { seconds } : {}), ...(view ? { view } : {}) });
+  }
+
+  // What somebody moves or types in the text, as if they did it beside the scene.
+  move(name, value) {
+    this.tell("touched");
+    this.set({ params: { [name]: value } });
+  }
+
+  enter(name, text) {
+    this.tell("touched");
+    this.post({ type: "sim3:enter", name, text });
   }
 
   post(message) {
