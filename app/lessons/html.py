@@ -205,7 +205,7 @@ class Writer:
         self._line = line(token)
         return kinds[token.meta["kind"]](token.meta["what"])
 
-    def _value(self, what: str, tag: str = "output") -> str:
+    def _value(self, what: str, tag: str = "span") -> str:
         try:
             value = shown(self._sim, what)
             return value.html(self._state.value(value.path), tag)

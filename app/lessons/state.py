@@ -165,7 +165,7 @@ class Shown:
     def _digits(self, value: Any) -> int:
         return (0 if isinstance(value, int) else 3) if self.digits is None else self.digits
 
-    def html(self, value: Any, tag: str = "output") -> str:
+    def html(self, value: Any, tag: str = "span") -> str:
         """An element that is kept up to date."""
         digits = "data-boxed" if self.boxed else f'data-digits="{self._digits(value)}"'
         unit = f' data-unit="{escape(self.unit)}"' if self.unit else ""

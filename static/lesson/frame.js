@@ -6,8 +6,9 @@ export class Frame {
     this.frame = frame;
     this.takers = {};
     this.state = null; // params, query, and the solution of the newest state that is solved
-    this.asked = 0;
+    this.asked = null; // when the question was sent that isn't answered yet
     this.stale = false;
+    this.again = 0;
     addEventListener("message", ({ source, origin, data }) => {
       if (origin === location.origin && source === frame.contentWindow) this.take(data);
     });
@@ -39,21 +40,23 @@ export class Frame {
     if (solution === undefined) return;
     this.state = { params, query, solution };
     this.tell("values", this.state);
-    this.asked = 0;
+    this.asked = null;
     if (this.stale) this.ask();
   }
 
   // The newest values: one question is on its way at a time.
   ask() {
-    this.stale = performance.now() - this.asked < ANSWERED;
+    this.stale = this.asked !== null && performance.now() - this.asked < ANSWERED;
     if (this.stale) return;
     this.asked = performance.now();
+    clearTimeout(this.again); // a sim that wasn't there yet never heard the question
+    this.again = setTimeout(() => this.asked !== null && this.askAnew(), ANSWERED);
     this.post({ type: "sim3:get", solution: true });
   }
 
   // What was asked before the sim was ready, it never heard.
   askAnew() {
-    this.asked = -ANSWERED;
+    this.asked = null;
     this.ask();
   }
 

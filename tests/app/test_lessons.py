@@ -243,7 +243,7 @@ def test_text_becomes_what_the_page_works_with(written: Callable[..., Lesson]) -
     assert (data["query"], data["view"], data["params"]["pitch"]) == ("pitch=30", [1, 2, 3, 0, 0, 0], 30)
     assert [section.id for section in lesson.sections] == ["start", "first", "last"]
     html = lesson.sections[1].html
-    assert '<output data-value="pitch" data-boxed data-unit="°">30°</output>' in html
+    assert '<span data-value="pitch" data-boxed data-unit="°">30°</span>' in html
     assert '<mn data-value="conditioning" data-digits="2">0.87</mn>' in html
     assert 'data-point="pitch"' in html
     assert 'href="../sims/quaternion?angle=30" data-href="../sims/quaternion?angle={value:pitch}"' in html
@@ -304,7 +304,7 @@ def test_a_lesson_of_the_folder_has_its_page(tmp_path: Path) -> None:
     (tmp_path / "broken.md").write_text(HEAD + "{value:nothing}\n")
     with Local(lesson_dir=tmp_path) as local:
         page = local.http.get("/lessons/our-robot").text
-        assert "Hello, <output" in page
+        assert "Hello, <span data-value" in page
         assert "/sims/gimbal-lock/embed?pitch=30" in page
         assert local.http.get("/lessons/broken").status_code == 404
         assert local.http.get("/lessons/none").status_code == 404
