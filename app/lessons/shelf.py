@@ -66,6 +66,10 @@ class Shelf:
         except LessonError as error:
             self.broken[path.name] = error
             log.warning("not a lesson:\n%s", error)
+        except Exception as error:  # whatever is in the file: the server starts without it
+            wrong = Mistake(1, f"the file can't be made into a lesson ({type(error).__name__})", "docs/lessons.md")
+            self.broken[path.name] = LessonError(path.name, [wrong])
+            log.exception("not a lesson: %s", path.name)
 
 
 def place(sim: AnySim) -> Path:

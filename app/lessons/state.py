@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
+from html import escape, unescape
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -17,9 +19,13 @@ from sims.kit.params import Params
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
+from sims.kit.spelling import shown_number
 
 AnySim = Sim[Any, Any]
 NOTHING = "–"
+LONGEST = 16
+"""Entries of a row of numbers that a text can show."""
+log = logging.getLogger("sim3")
 
 
 @dataclass(frozen=True)
@@ -54,6 +60,17 @@ class State:
         """All that stands beside the scene."""
         return Column(self.sim, self.library).html(self.params, self.solution)
 
+    @cached_property
+    def linked(self) -> set[str]:
+        """Names of all that can be pointed at."""
+        return {unescape(name) for names in re.findall(r'data-link="([^"]*)"', self.column) for name in names.split()}
+
+    @property
+    def link(self) -> str:
+        """The query with the view, for a link to the state."""
+        view = "" if self.view is None else "view=" + ",".join(f"{each:g}" for each in self.view)
+        return "&".join(filter(None, [self.query, view]))
+
     def value(self, path: str) -> Any:
         """The value at a path such as pitch, R.0.2 or solution.selected. Raises LookupError in words."""
         first, *rest = path.split(".")
@@ -67,6 +84,7 @@ class State:
         at = at[first]
         for step in rest:
             at = _within(at, step)
+        _can_be_shown(at)
         return at
 
 
@@ -80,6 +98,15 @@ def _within(at: Any, step: str) -> Any:
     if isinstance(at, Sequence) and not isinstance(at, str):
         raise LookupError(f"0 to {len(at) - 1}")
     raise LookupError("nothing after the value")
+
+
+def _can_be_shown(value: Any) -> None:
+    """Raises LookupError for what is more than a number, a word or a short row of numbers."""
+    if isinstance(value, Mapping):
+        raise LookupError("one of its parts: " + ", ".join(value))
+    row = isinstance(value, Sequence) and not isinstance(value, str)
+    if row and (len(value) > LONGEST or not all(isinstance(each, int | float) for each in value)):
+        raise LookupError(f"one of its {len(value)} entries, as in .0")
 
 
 def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
@@ -97,6 +124,9 @@ def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
         raise LookupError(f"for {name}: {allowed}") from None
     except GeometryError as error:
         raise LookupError(f"for {error.argument}: {error.allowed}") from None
+    except Exception as error:
+        log.exception("%s can't solve %r", sim.slug, query[:200])
+        raise LookupError(f"a state that the sim can solve ({type(error).__name__})") from None
     return state
 
 
@@ -111,11 +141,12 @@ def _view(given: Mapping[str, str]) -> list[float] | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """How a value is shown in the text: with digits, and its unit where it is a parameter."""
+    """How a value is shown in the text: with digits, or as its box has it; and its unit where it is a parameter."""
 
     path: str
     digits: int | None
     unit: str
+    boxed: bool = False
 
     def text(self, value: Any) -> str:
         """For people."""
@@ -123,20 +154,22 @@ class Shown:
             return NOTHING
         if isinstance(value, bool):
             return "yes" if value else "no"
+        if isinstance(value, (int, float)) and self.boxed:
+            return shown_number(value) + quantity(0, self.unit, 0)[1:]
         if isinstance(value, (int, float)):
             return quantity(value, self.unit, self._digits(value))
         if isinstance(value, Sequence) and not isinstance(value, str):
             return f"({', '.join(figure(each, self._digits(each)) for each in value)})"
         return str(value)
 
-    def _digits(self, value: float) -> int:
+    def _digits(self, value: Any) -> int:
         return (0 if isinstance(value, int) else 3) if self.digits is None else self.digits
 
-    def html(self, value: Any, tag: str = "output") -> str:
+    def html(self, value: Any, tag: str = "span") -> str:
         """An element that is kept up to date."""
-        digits = "" if self.digits is None else f' data-digits="{self.digits}"'
+        digits = "data-boxed" if self.boxed else f'data-digits="{self._digits(value)}"'
         unit = f' data-unit="{escape(self.unit)}"' if self.unit else ""
-        return f'<{tag} data-value="{escape(self.path)}"{digits}{unit}>{escape(self.text(value))}</{tag}>'
+        return f'<{tag} data-value="{escape(self.path)}" {digits}{unit}>{escape(self.text(value))}</{tag}>'
 
 
 def shown(sim: AnySim, what: str) -> Shown:
@@ -145,4 +178,5 @@ def shown(sim: AnySim, what: str) -> Shown:
     if digits and not (digits.isdecimal() and int(digits) <= 9):
         raise LookupError("after the path a colon and 0 to 9 digits")
     kind = sim.params.kinds.get(path)
-    return Shown(path, int(digits) if digits else None, "" if kind is None else unit_of(kind))
+    unit = "" if kind is None else unit_of(kind)
+    return Shown(path, int(digits) if digits else None, unit, boxed=kind is not None and not digits)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import segno
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import RedirectResponse, Response
 
@@ -39,7 +40,11 @@ def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
     items = request.query_params.multi_items()
     links.read(sim, items)
     query = links.own(items)
-    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query)
+    address = str(request.url.replace(query=""))
+    code = segno.make(address, micro=False).svg_inline(scale=3, border=0)
+    return rendering.render(
+        request, "sim.html", sim=sim, lesson=lesson, query=query, address=address, code_of_address=code
+    )
 
 
 @page("/concepts", router)

