@@ -6,13 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import parse_qsl
 
 from app.routes import links
 from geometry import GeometryError
 from sims.kit.column import Column
-from sims.kit.controls import unit_of
+from sims.kit.controls import letters, unit_of
+from sims.kit.fields import Vector
+from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
@@ -20,6 +22,16 @@ from sims.kit.sim import Library, Sim, jsonable
 
 AnySim = Sim[Any, Any]
 NOTHING = "–"
+
+
+class Held(NamedTuple):
+    """A number that can be dragged in the text."""
+
+    value: float
+    bounds: tuple[float, float]
+    label: str
+    step: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -54,6 +66,17 @@ class State:
         """All that stands beside the scene."""
         return Column(self.sim, self.library).html(self.params, self.solution)
 
+    @cached_property
+    def numbers(self) -> dict[str, Held]:
+        """The parameters that are numbers, and those in their lists, as in `angles.0`."""
+        p, found = self.params, dict[str, Held]()
+        for name, kind in p.numeric.items():
+            alone = not isinstance(kind, Several)
+            for k, (value, bounds) in enumerate(zip(kind.entries(getattr(p, name)), p.ranges(name), strict=False)):
+                label = p.label(name) if alone else _entry_label(p, name, k)
+                found[name if alone else f"{name}.{k}"] = Held(value, bounds, label, kind.step, kind.unit)
+        return found
+
     def value(self, path: str) -> Any:
         """The value at a path such as pitch, R.0.2 or solution.selected. Raises LookupError in words."""
         first, *rest = path.split(".")
@@ -68,6 +91,11 @@ class State:
         for step in rest:
             at = _within(at, step)
         return at
+
+
+def _entry_label(p: Params, name: str, k: int) -> str:
+    kind = p.kinds[name]
+    return f"{p.label(name)} {letters(kind)[k]}" if isinstance(kind, Vector) else p.entry_label(name, k)
 
 
 def _within(at: Any, step: str) -> Any:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from geometry import quaternion
 from sims.kit.challenge import Challenge, Progress, nearer
 from sims.kit.readout import quantity
@@ -20,10 +18,11 @@ WIDE = 8.0
 
 
 def _same_turn(_: QuaternionParams, s: QuaternionSolution) -> Progress:
-    apart = 2.0 * math.degrees(math.acos(min(abs(s.q @ SIXTY), 1.0)))
-    if apart <= 1.0 and (s.q @ SIXTY > 0.0 or s.n[2] > 0.0):
+    along = min(max(float(s.q @ SIXTY), -1.0), 1.0)
+    apart = 2.0 * math.degrees(math.acos(abs(along)))
+    if apart <= 1.0 and (along > 0.0 or s.n[2] > 0.0):
         return Progress(0.5, "That is the position, by the same arrow. Look for another one, with w below zero.")
-    to_go = 2.0 * math.degrees(math.acos(np.clip(-s.q @ SIXTY, -1.0, 1.0)))
+    to_go = 2.0 * math.degrees(math.acos(-along))
     words = f"The aircraft is {quantity(apart, '°', 0)} from where it should stand"
     return nearer(to_go, 360.0, 1.0, words, "The same position, and all four signs are turned round")
 

@@ -19,7 +19,8 @@ export class Values {
       if (node.textContent !== words) node.textContent = words;
     }
     for (const input of document.querySelectorAll("[data-drag]")) {
-      if (input !== this.held && !input.matches(":focus:not([data-stepped])")) put(input, state.params[input.dataset.drag]);
+      const value = valueAt(state, input.dataset.drag); // none where a list is too short for it
+      if (value !== undefined && input !== this.held && !input.matches(":focus:not([data-stepped])")) put(input, value);
     }
     for (const link of document.querySelectorAll("[data-href]")) link.setAttribute("href", filled(link.dataset.href, state));
   }
@@ -59,10 +60,11 @@ export class Values {
 
   move(input, wanted) {
     const [low, high] = [Number(input.ariaValueMin), Number(input.ariaValueMax)];
-    const now = this.sim.state?.params[input.dataset.drag] ?? Number(input.ariaValueNow);
+    const name = input.dataset.drag;
+    const now = (this.sim.state && valueAt(this.sim.state, name)) ?? Number(input.ariaValueNow);
     const value = Number.isFinite(wanted) ? Math.min(Math.max(Number(wanted.toPrecision(12)), low), high) : now;
     put(input, value);
-    if (value !== now) this.sim.set({ params: { [input.dataset.drag]: value } });
+    if (value !== now && this.sim.state) this.sim.set({ params: changed(this.sim.state.params, name, value) });
   }
 
   // ---- a symbol that shows what it is in the scene
@@ -76,6 +78,12 @@ export class Values {
   pointAt(name) {
     this.sim.post({ type: "sim3:point", name });
   }
+}
+
+// What sets a number: its parameter, or the whole list that it stands in.
+function changed(params, name, value) {
+  const [list, k] = name.split(".");
+  return { [list]: k === undefined ? value : params[list].with(Number(k), value) };
 }
 
 function put(input, value) {
