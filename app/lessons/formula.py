@@ -28,7 +28,7 @@ def mathml(latex: str, *, block: bool, live: Callable[[str], str]) -> str:
 
     def pointed(found: re.Match[str]) -> str:
         names.append(found[1])
-        return rf"\color{{{_COLOUR.format(len(names) - 1)}}}{{{found[2]}}}"
+        return rf"{{\color{{{_COLOUR.format(len(names) - 1)}}}{{{found[2]}}}}}"  # in braces: else it goes on to the end
 
     plain = LIVE.sub(value, POINT.sub(pointed, latex))
     try:
