@@ -213,17 +213,15 @@ class Writer:
             return self._wrong(f"{{value:{what}}}", str(error.args[0]))
 
     def _drag(self, name: str) -> str:
-        kind = self._sim.params.numeric.get(name)
-        if kind is None or not isinstance(value := self._state.given[name], (int, float)):
-            numbers = [n for n in self._sim.params.numeric if isinstance(self._state.given[n], (int, float))]
-            return self._wrong(f"{{drag:{name}}}", "one of " + ", ".join(numbers))
-        low, high = self._state.params.bounds(name)
-        number = shown(self._sim, name)
+        held = self._state.numbers.get(name)
+        if held is None:
+            return self._wrong(f"{{drag:{name}}}", "one of " + ", ".join(self._state.numbers))
+        low, high = held.bounds
         return (
-            f'<span class="drag"><input type="text" inputmode="decimal" role="spinbutton" size="1" value="{value:g}" '
-            f'autocomplete="off" data-drag="{name}" data-step="{kind.step:g}" aria-valuemin="{low:g}" '
-            f'aria-valuemax="{high:g}" aria-valuenow="{value:g}" aria-label="{escape(self._state.params.label(name))}">'
-            f'{escape(number.unit)}<span role="alert"></span></span>'
+            f'<span class="drag"><input type="text" inputmode="decimal" role="spinbutton" size="1" '
+            f'value="{held.value:g}" autocomplete="off" data-drag="{name}" data-step="{held.step:g}" '
+            f'aria-valuemin="{low:g}" aria-valuemax="{high:g}" aria-valuenow="{held.value:g}" '
+            f'aria-label="{escape(held.label)}">{escape(held.unit)}<span role="alert"></span></span>'
         )
 
     def _concept(self, what: str) -> str:

@@ -8,13 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape, unescape
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import parse_qsl
 
 from app.routes import links
 from geometry import GeometryError
 from sims.kit.column import Column
-from sims.kit.controls import unit_of
+from sims.kit.controls import letters, unit_of
+from sims.kit.fields import Vector
+from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
@@ -26,6 +28,16 @@ NOTHING = "–"
 LONGEST = 16
 """Entries of a row of numbers that a text can show."""
 log = logging.getLogger("sim3")
+
+
+class Held(NamedTuple):
+    """A number that can be dragged in the text."""
+
+    value: float
+    bounds: tuple[float, float]
+    label: str
+    step: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -71,6 +83,17 @@ class State:
         view = "" if self.view is None else "view=" + ",".join(f"{each:g}" for each in self.view)
         return "&".join(filter(None, [self.query, view]))
 
+    @cached_property
+    def numbers(self) -> dict[str, Held]:
+        """The parameters that are numbers, and those in their lists, as in `angles.0`."""
+        p, found = self.params, dict[str, Held]()
+        for name, kind in p.numeric.items():
+            alone = not isinstance(kind, Several)
+            for k, (value, bounds) in enumerate(zip(kind.entries(getattr(p, name)), p.ranges(name), strict=False)):
+                label = p.label(name) if alone else _entry_label(p, name, k)
+                found[name if alone else f"{name}.{k}"] = Held(value, bounds, label, kind.step, kind.unit)
+        return found
+
     def value(self, path: str) -> Any:
         """The value at a path such as pitch, R.0.2 or solution.selected. Raises LookupError in words."""
         first, *rest = path.split(".")
@@ -86,6 +109,11 @@ class State:
             at = _within(at, step)
         _can_be_shown(at)
         return at
+
+
+def _entry_label(p: Params, name: str, k: int) -> str:
+    kind = p.kinds[name]
+    return f"{p.label(name)} {letters(kind)[k]}" if isinstance(kind, Vector) else p.entry_label(name, k)
 
 
 def _within(at: Any, step: str) -> Any:

@@ -16,10 +16,8 @@ class NoRoom(MemoryError):
     """A solution is given up again, because all of them would take too much memory."""
 
     def __init__(self, size: int) -> None:
-        super().__init__(
-            f"The server has no room for this just now ({size / 1e6:,.0f} MB). Take a smaller cloud or larger voxels, or try again "
-            "later."
-        )
+        words = f"The server has no room for this just now ({size / 1e6:,.0f} MB)."
+        super().__init__(f"{words} Take a smaller cloud or larger voxels, or try again later.")
 
 
 def held(solution: Any) -> dict[int, int]:
@@ -52,7 +50,7 @@ class Memory:
         self._held: dict[object, Held] = {}
 
     def take(self, owner: object, solution: Any) -> None:
-        """Keep what the owner's newest solution holds, in place of the one before. Raises NoRoom; that one then stays."""
+        """Keep what the owner's newest solution holds, in place of the one before. Raises NoRoom; that one stays."""
         mine = held(solution)
         others = self._together(each for who, each in self._held.items() if who is not owner)
         if (size := sum((others | mine).values())) > self._most and size > sum(others.values()):

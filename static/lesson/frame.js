@@ -66,9 +66,9 @@ export class Frame {
   }
 
   // What somebody moves or types in the text, as if they did it beside the scene.
-  move(name, value) {
+  move(params) {
     this.tell("touched");
-    this.set({ params: { [name]: value } });
+    this.set({ params });
   }
 
   enter(name, text) {

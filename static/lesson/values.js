@@ -27,7 +27,8 @@ export class Values {
       if (node.textContent !== words) node.textContent = words;
     }
     for (const input of document.querySelectorAll("[data-drag]")) {
-      if (input !== this.held && !("typing" in input.dataset)) put(input, state.params[input.dataset.drag]);
+      const value = valueAt(state, input.dataset.drag); // none where a list is too short for it
+      if (value !== undefined && input !== this.held && !("typing" in input.dataset)) put(input, value);
     }
     for (const link of document.querySelectorAll("[data-href]")) link.setAttribute("href", filled(link.dataset.href, state));
   }
@@ -39,7 +40,7 @@ export class Values {
   }
 
   value(input) {
-    return this.sim.state?.params[input.dataset.drag] ?? Number(input.ariaValueNow);
+    return (this.sim.state && valueAt(this.sim.state, input.dataset.drag)) ?? Number(input.ariaValueNow);
   }
 
   // ---- a number that is held
@@ -92,8 +93,10 @@ export class Values {
     this.forgive(input);
     if (value === this.value(input) && value === Number(input.ariaValueNow)) return;
     put(input, value);
-    if (this.sim.state) this.sim.state.params[input.dataset.drag] = value; // the next step goes on from here
-    this.sim.move(input.dataset.drag, value);
+    if (!this.sim.state) return;
+    const changes = changed(this.sim.state.params, input.dataset.drag, value);
+    Object.assign(this.sim.state.params, changes); // the next step goes on from here
+    this.sim.move(changes);
   }
 
   // What was typed means what it would mean in the sim's own box, which says what can't be taken.
@@ -136,6 +139,12 @@ export class Values {
   pointAt(name) {
     this.sim.post({ type: "sim3:point", name });
   }
+}
+
+// What sets a number: its parameter, or the whole list that it stands in.
+function changed(params, name, value) {
+  const [list, k] = name.split(".");
+  return { [list]: k === undefined ? value : params[list].with(Number(k), value) };
 }
 
 function put(input, value) {
