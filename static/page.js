@@ -39,7 +39,7 @@ for (const button of document.querySelectorAll("[data-copy]")) {
 }
 
 async function copy(button) {
-  const section = button.closest("section");
+  const section = button.closest(".script, section");
   const code = section.querySelector("pre");
   const status = section.querySelector("[role=status]");
   status.textContent = "";

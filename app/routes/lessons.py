@@ -7,7 +7,7 @@ from fastapi.responses import RedirectResponse, Response
 
 from app.lessons.concepts import CONCEPTS
 from app.lessons.lesson import Lesson
-from app.routes import links, rendering
+from app.routes import code, links, rendering
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
 from app.routes.services import Given
@@ -37,9 +37,11 @@ async def own(request: Request, given: Given, name: str) -> Response:
 def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
     """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
     items = request.query_params.multi_items()
-    links.read(sim, items)
-    query = links.own(items)
-    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query)
+    params, query = links.read(sim, items), links.own(items)
+    if not query and lesson is not None and lesson.steps:
+        params = lesson.steps[0].state.params
+    scripts = code.shown(sim, params)
+    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query, scripts=scripts)
 
 
 @page("/concepts", router)
