@@ -44,18 +44,19 @@ class Script(NamedTuple):
 
 def script(sim: Sim[Any, Any], language: str) -> Script | None:
     """A sim's script, if it has one."""
-    return _read(ROOT / "sims" / sim.slug.replace("-", "_") / f"script_{language}.py", sim.params)
+    names = frozenset(sim.params.model_fields)
+    return _read(ROOT / "sims" / sim.slug.replace("-", "_") / f"script_{language}.py", names)
 
 
 @cache
-def _read(path: Path, params: type[Params]) -> Script | None:
+def _read(path: Path, names: frozenset[str]) -> Script | None:
     if not path.is_file():
         return None
     text = path.read_text("utf-8")
     tree = ast.parse(text)
     imported = {name for node in ast.walk(tree) for name in _imported(node)}
     title = next((title for module, title in LIBRARIES.items() if module in imported), "NumPy")
-    return Script(title, text, tuple(_places(params, text, tree)))
+    return Script(title, text, tuple(_places(names, text, tree)))
 
 
 def _imported(node: ast.AST) -> list[str]:
@@ -63,14 +64,14 @@ def _imported(node: ast.AST) -> list[str]:
     return [name.partition(".")[0] for name in [*names, getattr(node, "module", None) or ""]]
 
 
-def _places(params: type[Params], text: str, tree: ast.Module) -> list[Place]:
+def _places(names: frozenset[str], text: str, tree: ast.Module) -> list[Place]:
     starts = [0]
     for line in text.encode().splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
     found = []
     for node in tree.body:
         match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value) if name in params.model_fields and _is_set(value):
+            case ast.Assign(targets=[ast.Name(id=name)], value=value) if name in names and _is_set(value):
                 start = starts[value.lineno - 1] + value.col_offset
                 end = starts[(value.end_lineno or 0) - 1] + (value.end_col_offset or 0)
                 found.append(Place(name, start, end, isinstance(getattr(value, "value", None), float)))

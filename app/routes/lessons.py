@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import RedirectResponse, Response
 
-from app.lessons.concepts import CONCEPTS
+from app.lessons.concepts import CONCEPTS, MEANINGS
 from app.lessons.lesson import Lesson
 from app.routes import code, links, rendering
 from app.routes.pages import page
@@ -17,7 +17,7 @@ router = APIRouter(include_in_schema=False)
 
 @page("/", router)
 async def launcher(request: Request, given: Given) -> Response:
-    return rendering.render(request, "launcher.html", shelf=given.lessons)
+    return rendering.render(request, "launcher.html", shelf=given.lessons, concepts=CONCEPTS)
 
 
 @page("/sims/{slug}", router)
@@ -46,12 +46,12 @@ def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
 
 @page("/concepts", router)
 async def concepts(request: Request, given: Given) -> Response:
-    return rendering.render(request, "concepts.html", concepts=CONCEPTS, places=given.lessons.concepts())
+    return rendering.render(request, "concepts.html", concepts=CONCEPTS, meanings=MEANINGS, shelf=given.lessons)
 
 
 @page("/concepts/{slug}", router)
 async def concept(request: Request, given: Given, slug: str) -> Response:
-    place = given.lessons.concepts().get(slug)
+    place = given.lessons.concepts.get(slug)
     if place is None:
         raise HTTPException(404, f"There is no concept named {slug[:60]!r}.")
     return RedirectResponse(f"{rendering.base(request)}/sims/{place}#concept-{slug}")

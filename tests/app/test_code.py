@@ -47,7 +47,7 @@ def test_a_script_begins_with_the_defaults_and_has_nothing_of_ours(sim: AnySim, 
 @each_sim
 def test_a_script_has_the_numbers_of_its_link_and_differs_in_nothing_else(http: httpx.Client, sim: AnySim) -> None:
     link = contract_of(sim).link
-    params = sim.params.from_query([tuple(each.split("=")) for each in link.split("&")])  # type: ignore[misc]
+    params = sim.params.from_query([tuple(each.split("=")) for each in link.split("&")])
     for language in scripts.LANGUAGES:
         answer = http.get(f"/sims/{sim.slug}/code?lang={language}&{link}")
         assert answer.headers["content-type"] == "text/x-python; charset=utf-8"

@@ -177,7 +177,9 @@ def test_launcher_shows_every_sim_in_order(client: httpx.Client) -> None:
     shown = [item.text for item in page.all("li")]
     for sim in SIMS:
         assert any(sim.title in text and sim.summary in text for text in shown)
-        assert set(sim.concepts) <= set(shown)
+        learnt = LEARNT.findall(place(sim).read_text("utf-8")) if place(sim).is_file() else []
+        assert {CONCEPTS[slug] for slug in learnt} | (set() if learnt else {*sim.concepts}) <= {*shown}
+        assert {f"{PREFIX}/concepts/{slug}" for slug in learnt} <= {*page.links()}
 
 
 @each_sim
