@@ -17,6 +17,8 @@ from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from playwright.sync_api import Browser, Page, Route
 
+from app.lessons.concepts import CONCEPTS
+from app.lessons.shelf import LEARNT, place
 from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
@@ -34,6 +36,8 @@ ADDRESSES = {
     "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
     **{f"{sim.slug} without its scene": f"/sims/{sim.slug}/text" for sim in SIMS},
     "documentation": "/docs",
+    "concepts": "/concepts",
+    "about": "/about",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
 }
@@ -213,7 +217,7 @@ def test_sim_page_hands_its_query_on(client: httpx.Client, sim: AnySim) -> None:
 @each_sim
 def test_embed_code_opens_the_sim_as_it_is(client: httpx.Client, server: Server, sim: AnySim) -> None:
     page = get(client, f"/sims/{sim.slug}?controls=0&theme=dark")
-    frame = Document(page.one("pre").text).one("iframe")
+    frame = Document(page.all("pre")[-1].text).one("iframe")
     assert frame.attributes["src"] == f"{server.url}/sims/{sim.slug}/embed?controls=0&theme=dark"
     assert frame.attributes["title"] == sim.title
     assert client.get(frame.attributes["src"]).status_code == 200
