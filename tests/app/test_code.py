@@ -12,8 +12,10 @@ import nbformat
 import pytest
 
 from app import scripts
+from app.routes.code import shown
 from sims import SIMS
 from sims.kit.sim import Sim
+from tests.app.toys import toy
 from tests.sims.contract import contract_of
 
 AnySim = Sim[Any, Any]
@@ -106,6 +108,11 @@ def test_a_bad_parameter_is_named(http: httpx.Client, query: str, name: str) -> 
 def test_a_text_of_a_link_stays_a_text_of_the_script(http: httpx.Client) -> None:
     text = http.get("/sims/point-cloud/code", params={"dataset": "file", "second": "a'+print(1)#.ply"}).text
     assert values(text, next(sim for sim in SIMS if sim.slug == "point-cloud"))["second"] == "a'+print(1)#.ply"
+
+
+def test_a_sim_without_scripts_shows_none() -> None:
+    sim, _ = toy()
+    assert shown(sim, sim.params()) == []
 
 
 @each_sim
