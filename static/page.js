@@ -47,7 +47,7 @@ for (const button of document.querySelectorAll("[data-copy]")) {
 }
 
 async function copy(button) {
-  const section = button.closest("[data-code]");
+  const section = button.closest(".script, .snippet");
   const code = section.querySelector("pre");
   const status = section.querySelector("[role=status]");
   status.textContent = "";

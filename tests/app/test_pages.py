@@ -17,6 +17,8 @@ from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from playwright.sync_api import Browser, Page, Route
 
+from app.lessons.concepts import CONCEPTS
+from app.lessons.shelf import LEARNT, place
 from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
@@ -34,6 +36,8 @@ ADDRESSES = {
     "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
     **{f"{sim.slug} without its scene": f"/sims/{sim.slug}/text" for sim in SIMS},
     "documentation": "/docs",
+    "concepts": "/concepts",
+    "about": "/about",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
 }
@@ -172,12 +176,14 @@ def test_theme_of_a_link_holds_for_the_page_and_its_pictures(client: httpx.Clien
 
 def test_launcher_shows_every_sim_in_order(client: httpx.Client) -> None:
     page = get(client, "/")
-    to_sims = [link for link in page.links() if "/sims/" in link]
+    to_sims = [link for link in page.links() if "/sims/" in link and not link.endswith("/text")]
     assert to_sims == [f"{PREFIX}/sims/{sim.slug}" for sim in SIMS]
     shown = [item.text for item in page.all("li")]
     for sim in SIMS:
         assert any(sim.title in text and sim.summary in text for text in shown)
-        assert set(sim.concepts) <= set(shown)
+        learnt = LEARNT.findall(place(sim).read_text("utf-8")) if place(sim).is_file() else []
+        assert {CONCEPTS[slug] for slug in learnt} | (set() if learnt else {*sim.concepts}) <= {*shown}
+        assert {f"{PREFIX}/concepts/{slug}" for slug in learnt} <= {*page.links()}
 
 
 @each_sim
@@ -210,7 +216,7 @@ def test_sim_page_hands_its_query_on(client: httpx.Client, sim: AnySim) -> None:
 @each_sim
 def test_embed_code_opens_the_sim_as_it_is(client: httpx.Client, server: Server, sim: AnySim) -> None:
     page = get(client, f"/sims/{sim.slug}?controls=0&theme=dark")
-    frame = Document(page.one("pre").text).one("iframe")
+    frame = Document(page.all("pre")[-1].text).one("iframe")
     assert frame.attributes["src"] == f"{server.url}/sims/{sim.slug}/embed?controls=0&theme=dark"
     assert frame.attributes["title"] == sim.title
     assert client.get(frame.attributes["src"]).status_code == 200
@@ -381,7 +387,7 @@ def test_keyboard_skips_to_the_content_and_past_the_sim(page: Page, server: Serv
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
     page.keyboard.press("Enter")
-    stops = []
+    stops: list[str] = []
     while "Skip the sim" not in stops and len(stops) < 4:
         page.keyboard.press("Tab")
         stops.append(page.evaluate("document.activeElement.textContent"))
