@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import re
 from collections.abc import Callable
@@ -39,7 +40,7 @@ class Shelf:
         self._sims = sims
         self._given = given
         self._of_sims: dict[str, Lesson | None] = {}
-        self._turn = Lock()  # a page may ask while all are loaded ahead
+        self._turns = {sim.slug: Lock() for sim in sims}  # a page may ask while all are loaded ahead
         self.own: dict[str, Lesson] = {}
         """Those of the folder, by their names."""
         self.broken: dict[str, LessonError] = {}
@@ -47,9 +48,13 @@ class Shelf:
         for path in sorted(folder.glob("*.md")) if folder is not None else ():
             self._add(path)
 
+    async def soon(self, sim: AnySim) -> Lesson | None:
+        """The lesson of a sim, if it has one, without keeping others waiting. Raises LessonError."""
+        return await asyncio.to_thread(self.of_sim, sim)
+
     def of_sim(self, sim: AnySim) -> Lesson | None:
-        """The lesson of a sim, if it has one. Raises LessonError."""
-        with self._turn:
+        """The same, in this thread: where states take long to solve, it takes seconds."""
+        with self._turns[sim.slug]:
             if sim.slug not in self._of_sims:
                 path = place(sim)
                 self._of_sims[sim.slug] = self._load(path, sim.slug) if path.is_file() else None

@@ -141,7 +141,7 @@ async def catalogue() -> list[dict[str, Any]]:
 async def one(slug: str, given: Given) -> dict[str, Any]:
     """One sim, with its objectives, challenges, the steps of its lesson, and the schemas of parameters and solution."""
     sim = sim_or_404(slug)
-    lesson = given.lessons.of_sim(sim)
+    lesson = await given.lessons.soon(sim)
     steps = [] if lesson is None else lesson.steps
     return {
         **_details(sim), "solution": solution_schema(solved(sim)),

@@ -24,7 +24,7 @@ async def launcher(request: Request, given: Given) -> Response:
 @page("/sims/{slug}", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _lesson(request, sim, given.lessons.of_sim(sim))
+    return _lesson(request, sim, await given.lessons.soon(sim))
 
 
 @page("/lessons/{name}", router)

@@ -60,7 +60,7 @@ async def docs(request: Request) -> Response:
 async def embed(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
     key = new_key()
-    return _joined(request, given, sim, room_of(key), key)
+    return await _joined(request, given, sim, room_of(key), key)
 
 
 @page("/sims/{slug}/s/{room}/{key}/")
@@ -68,10 +68,10 @@ async def controlled(request: Request, given: Given, slug: str, room: str, key: 
     sim = sim_or_404(slug)
     if room_of(key) != room:
         raise HTTPException(404, "This link's key doesn't fit its room.")
-    return _joined(request, given, sim, room, key)
+    return await _joined(request, given, sim, room, key)
 
 
-def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str) -> Response:
+async def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str) -> Response:
     """The page of a room, with control of it."""
     query = request.query_params.multi_items()
     params = links.read(sim, query)
@@ -83,7 +83,7 @@ def _joined(request: Request, given: Services, sim: AnySim, room: str, key: str)
             params = session.params
         except GeometryError as error:  # of what no parameter's bounds exclude
             raise refusal_of(params, error) from None
-    return _page(request, given, sim, params, session, room, key)
+    return await _page(request, given, sim, params, session, room, key)
 
 
 def refusal_of(params: Params, error: GeometryError) -> BadParams:
@@ -92,7 +92,7 @@ def refusal_of(params: Params, error: GeometryError) -> BadParams:
     return BadParams([wrong], {name: text for name, text in params.query_items().items() if name != error.argument})
 
 
-def _page(
+async def _page(
     request: Request, given: Services, sim: AnySim, params: Params, session: Session | None, room: str, key: str = ""
 ) -> Response:
     """The page of a room whose session, if it runs, says what its column begins with."""
@@ -100,7 +100,8 @@ def _page(
     only = options["only"].split(",") if "only" in options else None
     solution = session.solution if session is not None and session.drawing.solved == params else None
     column = Column(sim, given.sessions.given(sim)).html(params, solution, only)
-    view, lesson = sim.home(params, solution), given.lessons.of_sim(sim)
+    view = sim.home(params, solution)
+    lesson = await given.lessons.soon(sim) if options.get("lesson") == "1" else None
     steps = [] if lesson is None else lesson.data()
     return rendering.viewer(request, sim, column, view, options, given.largest, steps, room, key)
 
@@ -123,7 +124,7 @@ async def watched(request: Request, given: Given, slug: str, room: str) -> Respo
     sim = sim_or_404(slug)
     known = given.sessions.find(sim, room)
     links.read(sim, request.query_params.multi_items())
-    return _page(request, given, sim, known.params if known else sim.params(), known, room)
+    return await _page(request, given, sim, known.params if known else sim.params(), known, room)
 
 
 @page("/viser/{fingerprint}/{name}")

@@ -90,7 +90,7 @@ def viewer(
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
         "code": f"{place}/code" if scripts.script(sim, "numpy") else "",
         "files": None if sim.files is None else {"largest": largest},
-        "steps": steps if options.get("lesson") == "1" else [],
+        "steps": steps,
         "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
         "paste": None if sim.paste is None else {"longest": LONGEST},
         "label": {"ink": DARK.ink, "plate": DARK.page},

@@ -65,7 +65,7 @@ def test_each_concept_is_learnt_in_one_place(shelf: Shelf) -> None:
     lessons = [lesson for sim in SIMS if (lesson := shelf.of_sim(sim)) is not None]
     learnt = Counter(concept for lesson in lessons for concept in lesson.concepts)
     assert learnt == dict.fromkeys(CONCEPTS, 1)
-    assert shelf.concepts() == {concept: lesson.sim.slug for lesson in lessons for concept in lesson.concepts}
+    assert shelf.concepts == {concept: lesson.sim.slug for lesson in lessons for concept in lesson.concepts}
 
 
 # ---- what is wrong: the body, the line below the head where that is, what was found, and what is allowed
