@@ -26,6 +26,7 @@ class Settings(BaseSettings):
     cloud_dir: Path | None = Field(None, description="folder whose files sims that take files offer to everybody")
     lesson_dir: Path | None = Field(None, description="folder whose lessons (.md) stand on the launcher's second shelf")
     max_upload: int = Field(100, ge=1, le=2000, description="megabytes that a file of a learner may have")
+    max_memory: int = Field(1500, ge=50, description="megabytes that the solutions of point clouds may take in all")
     max_sessions: int = Field(500, ge=1, le=100_000, description="sessions open at once")
     max_sessions_per_address: int = Field(200, ge=1, le=100_000, description="of these, from one network address")
     max_openings: int = Field(180, ge=1, le=100_000, description="sessions that one address may open within a minute")

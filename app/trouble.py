@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from app.rooms.memory import NoRoom
 from app.values import complaints, shown
 from geometry import GeometryError
 from sims.kit.params import Params
@@ -44,6 +45,8 @@ def error_message(
         found = list(complaints(sim.params, given or {}, error))
         said = " ".join(_sentence(complaint, bool(item["loc"])) for item, complaint in found) if beside else ""
         return refused(said, *(complaint for _, complaint in found))
+    if isinstance(error, NoRoom):
+        return refused(str(error))
     if isinstance(error, GeometryError):
         known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)

@@ -69,7 +69,9 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     largest = settings.max_upload * 1_000_000
     libraries = {sim.slug: sim.files.library(settings.cloud_dir, largest) for sim in SIMS if sim.files is not None}
     fairness = Fairness(settings.max_sessions_per_address, settings.max_openings)
-    sessions = Sessions(settings.max_sessions, libraries, fairness, settings.idle_minutes * 60)
+    sessions = Sessions(
+        settings.max_sessions, libraries, fairness, settings.idle_minutes * 60, settings.max_memory * 1_000_000
+    )
     bridge = Bridge(host, sessions, settings.origins)
     sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)

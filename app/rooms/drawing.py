@@ -145,6 +145,7 @@ class Drawing:
             self.work = None
         if work.cancelled:
             raise Superseded
+        self._solver.memory.take(self, found)
         return found
 
     def _wanted(self, until: float) -> Callable[[], bool]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.rooms.places import Fairness, Full, neighbourhood
 from app.rooms.session import Session
-from app.rooms.solver import Solver, workers
+from app.rooms.solver import ROOM, Solver, workers
 from sims.kit import child
 from sims.kit.params import Params
 from sims.kit.sim import Library, Sim
@@ -30,12 +30,12 @@ class Sessions:
     """At most `limit` sessions, by sim and room. `libraries` are those of the sims that have files, by slug.
 
     What an address may have of them `fairness` says. A session in which nobody does anything for `idle` seconds is put
-    away.
+    away. Solutions that take long may take `most` bytes in all.
     """
 
     def __init__(
         self, limit: int, libraries: Mapping[str, Library] | None = None, fairness: Fairness | None = None,
-        idle: float = math.inf
+        idle: float = math.inf, most: int = ROOM,
     ) -> None:  # fmt: skip
         self.limit = limit
         self._fairness = fairness or Fairness(limit, limit)
@@ -47,7 +47,7 @@ class Sessions:
         self._sweeping: asyncio.Task[None] | None = None
         self._libraries = libraries or {}
         self._by_room: dict[tuple[str, str], Session] = {}
-        self._solver = Solver()
+        self._solver = Solver(most)
         self.aside = workers("aside", 1)
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
         self._ahead = workers("ahead", 1)
@@ -60,6 +60,10 @@ class Sessions:
     def uploaded_bytes(self) -> int:
         """Bytes of all files that sessions keep."""
         return sum(sum(session.uploads.values()) for session in self._by_room.values())
+
+    def solved_bytes(self) -> int:
+        """Bytes of what is kept of solutions that take long."""
+        return self._solver.memory.bytes
 
     def given(self, sim: Sim[Any, Any]) -> tuple[Library, ...]:
         """What a sim's functions need besides the parameters."""

@@ -20,6 +20,7 @@ from app import metrics
 from app.rooms.drawing import Drawing
 from app.rooms.highlight import Highlight
 from app.rooms.looking_up import LookingUp
+from app.rooms.memory import NoRoom
 from app.rooms.motion import Motion, gliding
 from app.rooms.solver import Solver
 from app.rooms.telling import Listener, Message, Telling
@@ -268,7 +269,7 @@ class Session:
 
     def _not_solved(self, params: Params, error: Exception) -> None:
         """A state has no solution: the one before stays."""
-        if not isinstance(error, GeometryError):
+        if not isinstance(error, GeometryError | NoRoom):
             metrics.FAILURES.labels(self.sim.slug, "solve").inc()
         self._failed(error, params)
         if self.params is params:
@@ -364,6 +365,7 @@ class Session:
         """Give back what the session keeps elsewhere, and give up its work; what still has to end is returned."""
         for name in [*self.uploads]:
             self.forget(name)
+        self._solver.memory.free(self.drawing)
         self.motion.stop()
         self.telling.end()
         working = self._tasks()

@@ -11,7 +11,10 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any, TypeVar
 
+from app.rooms.memory import Memory
+
 T = TypeVar("T")
+ROOM = 1_500_000_000
 GIVES_WAY = 10
 """Steps of niceness."""
 AT_ONCE, MOST = 2, 32
@@ -21,9 +24,13 @@ LONG = 1.0
 
 
 class Solver:
-    """Solves beside the event loop: a few at once, and nobody waits for those that take long."""
+    """Solves beside the event loop: a few at once, and nobody waits for those that take long.
 
-    def __init__(self) -> None:
+    What is found may take `most` bytes in all.
+    """
+
+    def __init__(self, most: int = ROOM) -> None:
+        self.memory = Memory(most)
         self._pool = workers("solve", MOST)
         self._free = asyncio.Semaphore(AT_ONCE)
 

@@ -49,6 +49,7 @@ def _single(given: Services) -> dict[str, tuple[str, float]]:
         "sim3_pages": ("Pages that are open", len(given.bridge.visits)),
         "sim3_session_limit": ("Sessions that may be open at once", given.sessions.limit),
         "sim3_uploaded_bytes": ("Bytes of learners' files that sessions keep", given.sessions.uploaded_bytes()),
+        "sim3_solved_bytes": ("Bytes of solutions that take long", given.sessions.solved_bytes()),
         "sim3_tasks": ("Tasks of the event loop", len(asyncio.all_tasks())),
         "sim3_threads": ("Threads", threading.active_count()),
         "sim3_draining": ("1 while the server ends", float(given.sessions.draining)),
