@@ -82,6 +82,8 @@ def _lines_stay(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     moved = [math.dist(pixel, start) for pixel, start in zip((s.pixel_left, s.pixel_right), began, strict=True)]
     lines = epipolar_line_left(both.F, s.pixel_right), epipolar_line_right(both.F, s.pixel_left)
     off = max(abs(float(line @ (*start, 1.0))) for line, start in zip(lines, began, strict=True))
+    if not math.isfinite(off):
+        return Progress(0.0, "P is seen in an epipole, which has no line: move it away from the baseline.")
     words = (
         f"p has moved by {quantity(moved[0], 'px', 0)}, p′ by {quantity(moved[1], 'px', 0)};"
         f" the lines are {quantity(off, 'px', 1)} off"

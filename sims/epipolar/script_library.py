@@ -10,15 +10,19 @@ left_pan = 0.0  # degrees about the vertical
 right_pan = 0.0
 focal = 600.0  # pixels
 point = (0.3, 4.0, 1.2)
+own = None  # or two calibrated cameras in their place: fx, fy, cx, cy of both, then R (rotation vector, degrees) and t
 
-K = np.array([[focal, 0, 320], [0, focal, 240], [0, 0, 1.0]])
+LEVEL = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # axes of a level camera: x right, y down, z forward
 
 
-def camera(center, pan):
-    """R and t of a level camera: x right, y down, z forward."""
-    turn, _ = cv2.Rodrigues(np.radians([0.0, 0.0, pan]))
-    R = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]) @ turn.T
-    return R, -R @ center
+def rotation(degrees):
+    """R of a rotation vector."""
+    return cv2.Rodrigues(np.radians(degrees))[0]
+
+
+def lens(fx, fy, cx, cy):
+    """The camera matrix."""
+    return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
 
 
 def unit(M):
@@ -28,20 +32,30 @@ def unit(M):
     return M * np.sign(M.flat[largest])
 
 
-(R_left, t_left), (R_right, t_right) = camera(left, left_pan), camera(right, right_pan)
-P_left, P_right = (K @ np.column_stack(pose) for pose in ((R_left, t_left), (R_right, t_right)))
+if own is None:
+    K = K_right = lens(focal, focal, 320, 240)
+    R_left, R_right = ((rotation((0.0, 0.0, pan)) @ LEVEL).T for pan in (left_pan, right_pan))
+else:  # each turned by half of R, to opposite sides, and 1.2 m apart
+    K, K_right = lens(*own[:4]), lens(*own[4:8])
+    half = rotation(np.divide(own[8:11], 2))
+    R_left, R_right = (LEVEL @ half).T, (LEVEL @ half.T).T
+    middle, to_right = np.array([0, 0, 1.0]), -LEVEL @ half.T @ own[11:]
+    to_right *= 0.6 / np.linalg.norm(to_right)
+    left, right = middle - to_right, middle + to_right
+t_left, t_right = -R_left @ left, -R_right @ right
+P_left, P_right = K @ np.column_stack((R_left, t_left)), K_right @ np.column_stack((R_right, t_right))
 pixels = [
-    cv2.projectPoints(np.array([point]), cv2.Rodrigues(R)[0], t, K, None)[0][0]
-    for R, t in ((R_left, t_left), (R_right, t_right))
+    cv2.projectPoints(np.array([point]), cv2.Rodrigues(R)[0], t, lens_of, None)[0][0]
+    for R, t, lens_of in ((R_left, t_left, K), (R_right, t_right, K_right))
 ]
 print("pixels:", *pixels)  # also of a point behind a camera, which then sees nothing
 
-if left != right:  # without a baseline there is no epipolar geometry
+if np.any(np.subtract(right, left)):  # without a baseline there is no epipolar geometry
     # From the left camera's axes to the right one's, and E = [t]ₓ R.
     R = R_right @ R_left.T
     x, y, z = t_right - R @ t_left
     E = unit(np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ R)
-    F = unit(cv2.invert(K)[1].T @ E @ cv2.invert(K)[1])
+    F = unit(cv2.invert(K_right)[1].T @ E @ cv2.invert(K)[1])
     print("F:", F, "E:", E, sep="\n")
 
     in_front = all((P @ [*point, 1])[2] > 0 for P in (P_left, P_right))

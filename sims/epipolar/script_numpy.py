@@ -9,15 +9,22 @@ left_pan = 0.0  # degrees about the vertical
 right_pan = 0.0
 focal = 600.0  # pixels
 point = (0.3, 4.0, 1.2)
+own = None  # or two calibrated cameras in their place: fx, fy, cx, cy of both, then R (rotation vector, degrees) and t
 
-K = np.array([[focal, 0, 320], [0, focal, 240], [0, 0, 1.0]])
+LEVEL = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # axes of a level camera: x right, y down, z forward
 
 
-def camera(center, pan):
-    """R and t of a level camera: x right, y down, z forward."""
-    c, s = np.cos(np.radians(pan)), np.sin(np.radians(pan))
-    R = np.array([[c, s, 0], [0, 0, -1], [-s, c, 0]])
-    return R, -R @ center
+def rotation(degrees):
+    """R of a rotation vector, by Rodrigues' formula."""
+    angle = np.radians(np.linalg.norm(degrees))
+    x, y, z = np.radians(degrees) / angle if angle else (0.0, 0.0, 0.0)
+    W = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * W + (1 - np.cos(angle)) * W @ W
+
+
+def lens(fx, fy, cx, cy):
+    """The camera matrix."""
+    return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
 
 
 def project(P, X):
@@ -38,17 +45,27 @@ def line(l):
     return l / np.hypot(l[0], l[1])
 
 
-(R_left, t_left), (R_right, t_right) = camera(left, left_pan), camera(right, right_pan)
-P_left, P_right = (K @ np.column_stack(pose) for pose in ((R_left, t_left), (R_right, t_right)))
+if own is None:
+    K = K_right = lens(focal, focal, 320, 240)
+    R_left, R_right = ((rotation((0.0, 0.0, pan)) @ LEVEL).T for pan in (left_pan, right_pan))
+else:  # each turned by half of R, to opposite sides, and 1.2 m apart
+    K, K_right = lens(*own[:4]), lens(*own[4:8])
+    half = rotation(np.divide(own[8:11], 2))
+    R_left, R_right = (LEVEL @ half).T, (LEVEL @ half.T).T
+    middle, to_right = np.array([0, 0, 1.0]), -LEVEL @ half.T @ own[11:]
+    to_right *= 0.6 / np.linalg.norm(to_right)
+    left, right = middle - to_right, middle + to_right
+t_left, t_right = -R_left @ left, -R_right @ right
+P_left, P_right = K @ np.column_stack((R_left, t_left)), K_right @ np.column_stack((R_right, t_right))
 pixel_left, pixel_right = project(P_left, point), project(P_right, point)
 print("pixels:", pixel_left, pixel_right)
 
-if left != right:  # without a baseline there is no epipolar geometry
+if np.any(np.subtract(right, left)):  # without a baseline there is no epipolar geometry
     # From the left camera's axes to the right one's, and E = [t]ₓ R.
     R = R_right @ R_left.T
     x, y, z = t_right - R @ t_left
     E = unit(np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ R)
-    F = unit(np.linalg.inv(K).T @ E @ np.linalg.inv(K))
+    F = unit(np.linalg.inv(K_right).T @ E @ np.linalg.inv(K))
 
     # An epipole is the other camera's centre in the picture.
     epipole_left, epipole_right = unit(P_left @ [*right, 1]), unit(P_right @ [*left, 1])

@@ -63,7 +63,7 @@ CHALLENGES: tuple[Challenge[TriangulationParams, TriangulationSolution], ...] = 
         misses=({"right_uv": (320, 216)}, {"right_uv": (320, 222)}, {"left_uv": (390, 210), "right_uv": (340, 213)}),
     ),
     Challenge(
-        id="ten-centimetres", title="10 cm unsure",
+        id="ten-centimetres", title="Ten centimetres unsure",
         goal="With the cameras as they open: find the depth at which σ of the depth is 10 cm.",
         near=_unsure, solves={"left_uv": (347, 210), "right_uv": (275.7, 210)},
         misses=({"left_uv": (347, 210), "right_uv": (277, 210)}, {"right_uv": (335, 210)}),

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import fields
 from html.parser import HTMLParser
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs, urljoin, urlsplit
 
 import httpx
 import pytest
@@ -159,6 +159,7 @@ def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Serv
         if link.startswith("#"):
             assert link[1:] in ids
         elif not link.startswith("https://"):
+            link = urljoin(PREFIX + address, link)
             assert link.startswith(PREFIX + "/")
             assert client.get(server.origin + link).status_code in (200, 307), link
 

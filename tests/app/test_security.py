@@ -156,7 +156,8 @@ def test_a_full_server_says_so() -> None:
     with Local(max_sessions=2) as local, Page(local.url) as one, Page(local.url) as other:
         answer = local.http.get(f"/sims/{SLUG}/embed", follow_redirects=True)
         assert answer.status_code == 503
-        assert "minute" in answer.text
+        assert "All places on this server are taken" in answer.text
+        assert int(answer.headers["retry-after"]) > 0
         socket = connect(f"{local.url}/sims/{SLUG}/s/{ROOM}/{KEY}/", viser=True)
         socket.send(encode_message(camera_message()))
         assert closed(socket) == 1013
