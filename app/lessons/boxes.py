@@ -104,6 +104,8 @@ def _choices(_: AnySim, __: str, items: Sequence[questions.Item], answer: Any, h
 
 def _choice(words: str, value: str, *, right: bool) -> str:
     mark = " data-right" if right else ""
+    if not re.sub(r"<math.*?</math>", "", words).strip():  # a formula alone has no words by which it is called
+        words = f'<span class="unseen">Answer {int(value) + 1}: </span>{words}'
     return (
         f'<label class="choice"><input type="radio" name="answer" value="{value}"{mark}> <span>{words}</span></label>'
     )
