@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.epipolar import epipolar_line_left, epipolar_line_right
 from sims.epipolar.actions import PRESETS
-from sims.epipolar.params import LAST, POINT, EpipolarParams, Pixel
+from sims.epipolar.params import POINT, EpipolarParams, Pixel, Size
 from sims.epipolar.rig import pair
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.challenge import Challenge, Progress, nearer
@@ -49,7 +49,8 @@ def _off(sine: float) -> float:
 def _both_inside(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     if s.F is None:
         return NO_BASELINE
-    left, right = (_outside(pixel) for pixel in (s.epipole_left_pixel, s.epipole_right_pixel))
+    epipoles = zip((s.epipole_left_pixel, s.epipole_right_pixel), p.sizes, strict=True)
+    left, right = (_outside(pixel, size) for pixel, size in epipoles)
     fraction = 0.5 * sum(1.0 - min(each / FAR, 1.0) for each in (left, right))
     if fraction == 1.0:
         return Progress(1.0, "Both epipoles are inside their pictures")
@@ -57,11 +58,11 @@ def _both_inside(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     return Progress(min(fraction, 0.99), words)
 
 
-def _outside(pixel: Pixel | None) -> float:
+def _outside(pixel: Pixel | None, size: Size) -> float:
     """Pixels from an epipole to its picture."""
     if pixel is None:
         return math.inf
-    return math.hypot(*(max(-at, at - last, 0.0) for at, last in zip(pixel, LAST, strict=True)))
+    return math.hypot(*(max(-at, at - (across - 1.0), 0.0) for at, across in zip(pixel, size, strict=True)))
 
 
 def _where(outside: float) -> str:
