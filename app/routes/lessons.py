@@ -8,6 +8,7 @@ from fastapi.responses import RedirectResponse, Response
 from app.lessons.concepts import CONCEPTS
 from app.lessons.lesson import Lesson
 from app.routes import links, rendering
+from app.routes.card import card
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
 from app.routes.services import Given
@@ -23,7 +24,7 @@ async def launcher(request: Request, given: Given) -> Response:
 @page("/sims/{slug}", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _lesson(request, sim, given.lessons.of_sim(sim))
+    return _lesson(request, sim, given.lessons.of_sim(sim), f"sims/{slug}")
 
 
 @page("/lessons/{name}", router)
@@ -31,15 +32,16 @@ async def own(request: Request, given: Given, name: str) -> Response:
     if name not in given.lessons.own:
         raise HTTPException(404, f"There is no lesson named {name[:60]!r}.")
     lesson = given.lessons.own[name]
-    return _lesson(request, lesson.sim, lesson)
+    return _lesson(request, lesson.sim, lesson, f"lessons/{name}")
 
 
-def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
+def _lesson(request: Request, sim: AnySim, lesson: Lesson | None, path: str) -> Response:
     """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
     items = request.query_params.multi_items()
     links.read(sim, items)
     query = links.own(items)
-    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query)
+    told = card(request, sim, lesson, path)
+    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query, path=path, card=told)
 
 
 @page("/concepts", router)
