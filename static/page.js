@@ -33,7 +33,7 @@ async function open(event, link) {
   if (event.ctrlKey || event.metaKey || event.shiftKey) return;
   event.preventDefault();
   const address = new URL(link.href);
-  address.searchParams.set("opens", "lesson");
+  address.searchParams.set("share-opens", "lesson");
   if (seenFrom()) address.searchParams.set("view", seenFrom());
   try {
     await (await import(link.dataset.dialog)).share(address.href, link);

@@ -28,8 +28,8 @@ def place_of(request: Request, address: str) -> Place | None:
     """
     try:
         parts = urlsplit(address)
-        there, here = (origins.at(parts.scheme, host) for host in (parts.netloc, request.url.netloc))
-    except (KeyError, ValueError):
+        there, here = (origins.parse(f"{parts.scheme}://{host}") for host in (parts.netloc, request.url.netloc))
+    except ValueError:
         return None
     prefix = f"{base(request)}/"
     if there != here or not f"{parts.path}/".startswith(prefix):

@@ -22,7 +22,7 @@ from sims.kit.sim import Library
 from sims.kit.spelling import clipped
 
 router = APIRouter(include_in_schema=False)
-FORM = ("opens", "seen", "height")
+FORM = OPENS, SEEN, FRAME = "share-opens", "share-seen", "share-height"
 """What the form asks besides what a link holds: what opens, the view that can be included, a frame's height."""
 LOWEST, HIGHEST = 200, 2000
 """Pixels that a frame may be high."""
@@ -51,13 +51,13 @@ def _share(request: Request, given: Services, sim: AnySim, path: str, lesson: Le
     asked = request.query_params
     items = linked(asked.multi_items())
     links.read(sim, items)
-    height, (state, options), query = _height(asked.get("height", "")), links.parts(items), links.own(items)
+    height, (state, options), query = _height(asked.get(FRAME, "")), links.parts(items), links.own(items)
     search = f"?{query}" if query else ""
     embed = f"sims/{sim.slug}/embed{search}"
-    link = f"{request.base_url}{path}{search}" if asked.get("opens") == "lesson" else f"{request.base_url}{embed}"
+    link = f"{request.base_url}{path}{search}" if asked.get(OPENS) == "lesson" else f"{request.base_url}{embed}"
     response = rendering.render(
         request, "share.html", sim=sim, lesson=lesson, path=path, state=state, options=dict(options),
-        opens=asked.get("opens"), seen=asked.get("seen") or dict(options).get("view", ""), height=height,
+        opens=asked.get(OPENS), seen=asked.get(SEEN) or dict(options).get("view", ""), height=height,
         bounds=(LOWEST, HIGHEST), controls=_controls(sim, given.sessions.given(sim)), link=link,
         short=len(link) <= LONGEST, embed=embed, snippets=snippets(f"{request.base_url}{embed}", sim.title, height),
     )  # fmt: skip
@@ -80,7 +80,7 @@ def _height(text: str) -> int:
         return HEIGHT
     if text.isdecimal() and LOWEST <= int(text) <= HIGHEST:
         return int(text)
-    raise BadParams([Complaint("height", clipped(text), f"{LOWEST} to {HIGHEST} pixels")], {})
+    raise BadParams([Complaint(FRAME, clipped(text), f"{LOWEST} to {HIGHEST} pixels")], {})
 
 
 def _controls(sim: AnySim, library: tuple[Library, ...]) -> list[tuple[str, str]]:
