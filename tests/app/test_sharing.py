@@ -103,7 +103,9 @@ def test_every_sim_can_be_shared_and_no_parameter_is_taken_for_the_forms_own(cli
 
 def test_the_form_leads_to_the_link_that_it_describes(client: httpx.Client, server: Server) -> None:
     view = "4,1,2,0,0,0"
-    chosen = f"yaw=45&view={view}&share-seen={view}&controls=some&only=yaw&only=pitch&theme=dark&lesson=1&share-height=480"
+    chosen = (
+        f"yaw=45&view={view}&share-seen={view}&controls=some&only=yaw&only=pitch&theme=dark&lesson=1&share-height=480"
+    )
     found = shared(client, f"/sims/euler-angles/share?{chosen}&challenge=reach-target&share-opens=lesson")
     link = found.result("link")["value"]
     assert link.startswith(f"{server.url}/sims/euler-angles?")
@@ -120,7 +122,14 @@ def test_the_form_leads_to_the_link_that_it_describes(client: httpx.Client, serv
 
 
 def test_a_form_as_it_is_at_first_adds_nothing_to_the_link() -> None:
-    first = [("yaw", "45"), ("share-seen", ""), ("share-opens", "sim"), ("controls", "1"), ("theme", ""), ("challenge", "")]
+    first = [
+        ("yaw", "45"),
+        ("share-seen", ""),
+        ("share-opens", "sim"),
+        ("controls", "1"),
+        ("theme", ""),
+        ("challenge", ""),
+    ]
     assert linked([*first, ("share-height", "600"), ("only", "pitch")]) == [("yaw", "45")]
     assert linked([("controls", "0"), ("only", "yaw")]) == [("controls", "0")]
     assert linked([("only", "yaw,pitch")]) == [("only", "yaw,pitch")], "as a link has it"
@@ -184,7 +193,9 @@ def test_every_text_holds_the_link_as_it_is_where_it_is_pasted() -> None:
     for name in ("html", "moodle", "canvas", "mkdocs"):
         assert Elements(texts[name]).one("iframe")["src"] == LINK
         assert "\n" not in texts[name], "an empty line or an indent would end the block"
-    assert Elements(MarkdownIt("commonmark").render(f"Before\n\n{texts['mkdocs']}\n\nAfter")).one("iframe")["src"] == LINK
+    assert (
+        Elements(MarkdownIt("commonmark").render(f"Before\n\n{texts['mkdocs']}\n\nAfter")).one("iframe")["src"] == LINK
+    )
     for name, kind in (("jupyter-book", "{raw} html"), ("quarto", "{=html}")):
         (fence,) = MarkdownIt("commonmark").parse(texts[name])
         assert fence.info == kind
@@ -254,7 +265,9 @@ def test_oembed_and_codes_know_the_host_that_a_proxy_forwards(client: httpx.Clie
 @pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 def test_a_lessons_page_describes_itself_to_other_sites(client: httpx.Client, sim: Any) -> None:
     html = client.get(f"/sims/{sim.slug}").text
-    metas = {given.get("property", ""): given.get("content", "") for tag, given in Elements(html).found if tag == "meta"}
+    metas = {
+        given.get("property", ""): given.get("content", "") for tag, given in Elements(html).found if tag == "meta"
+    }
     assert metas["og:url"] == f"{client.base_url}sims/{sim.slug}"
     assert client.get(metas["og:image"]).status_code == 200
     assert f"/{sim.slug}-light.webp" in metas["og:image"]
