@@ -170,8 +170,8 @@ def test_a_phone_reads_the_link_from_the_code(client: httpx.Client, server: Serv
 
 @pytest.mark.parametrize(
     "other",
-    ["", "nonsense", "https://elsewhere.example/geo/sim3/sims/camera", "javascript:alert(1)", "http://[", "{origin}/sims",
-     "{origin}/geo/sim34/x", "http://me@{host}/geo/sim3/", "//{host}/geo/sim3/"],
+    ["", "nonsense", "https://elsewhere.example/geo/sim3/sims/camera", "javascript:alert(1)", "http://[",
+     "{origin}/sims", "{origin}/geo/sim34/x", "http://me@{host}/geo/sim3/", "//{host}/geo/sim3/"],
 )  # fmt: skip
 def test_nothing_is_said_of_other_addresses(client: httpx.Client, server: Server, other: str) -> None:
     url = other.format(origin=server.origin, host=urlsplit(server.origin).netloc)
