@@ -1,5 +1,5 @@
-// What a page does beyond its HTML. On a sim's page the address, the link to full screen and the embed code follow
-// the state of the sim; a page of errors in another page's frame tells that page.
+// What a page does beyond its HTML. On a sim's page the address, the link to full screen and those to share it
+// follow the state of the sim; a page of errors in another page's frame tells that page.
 const frame = document.querySelector("iframe[data-slug]");
 const options = ["view", "controls", "theme"];
 
@@ -17,14 +17,7 @@ function follow(query) {
   const kept = options.filter((name) => given.has(name)).map((name) => [name, given.get(name)]);
   const search = [query, new URLSearchParams(kept).toString().replaceAll("%2C", ",")].filter(Boolean).join("&");
   history.replaceState(null, "", location.pathname + (search && "?" + search) + location.hash);
-  for (const link of document.querySelectorAll("[data-follows]")) link.search = search;
-  showCode();
-}
-
-function showCode() {
-  const link = document.querySelector("[data-follows]");
-  const place = document.querySelector("[data-embed]");
-  if (link && place) place.textContent = link.href.replaceAll("&", "&amp;").replaceAll('"', "&quot;");
+  for (const link of document.querySelectorAll("[data-follows], [data-dialog]")) link.search = search;
 }
 
 // When the reader's system turns dark or light, the page follows by its CSS, the sim by loading anew: its address
@@ -47,7 +40,7 @@ for (const button of document.querySelectorAll("[data-copy]")) {
 }
 
 async function copy(button) {
-  const section = button.closest(".script, .snippet");
+  const section = button.closest(".script");
   const code = section.querySelector("pre");
   const status = section.querySelector("[role=status]");
   status.textContent = "";
@@ -61,7 +54,30 @@ async function copy(button) {
   }
 }
 
-showCode();
+// The dialog of what a state is handed on by; without it the link leads to the same as a page.
+for (const link of document.querySelectorAll("[data-dialog]")) link.addEventListener("click", (event) => open(event, link));
+
+async function open(event, link) {
+  if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+  event.preventDefault();
+  const address = new URL(link.href);
+  address.searchParams.set("share-opens", "lesson");
+  if (seenFrom()) address.searchParams.set("view", seenFrom());
+  try {
+    await (await import(link.dataset.dialog)).share(address.href, link);
+  } catch {
+    location.assign(address.href);
+  }
+}
+
+// The sim's own address holds from where it is looked at, once somebody has turned it.
+function seenFrom() {
+  try {
+    return new URLSearchParams(frame.contentWindow.location.search).get("view");
+  } catch {
+    return null; // in a frame without an origin the sim's is another one
+  }
+}
 
 const error = document.querySelector("[data-error]");
 if (error && parent !== window) {

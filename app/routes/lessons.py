@@ -9,6 +9,7 @@ from fastapi.responses import RedirectResponse, Response
 from app.lessons.concepts import CONCEPTS, MEANINGS
 from app.lessons.lesson import Lesson
 from app.routes import code, links, rendering
+from app.routes.card import card
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
 from app.routes.services import Given
@@ -24,7 +25,7 @@ async def launcher(request: Request, given: Given) -> Response:
 @page("/sims/{slug}", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _lesson(request, sim, await given.lessons.soon(sim))
+    return _lesson(request, sim, await given.lessons.soon(sim), f"sims/{slug}")
 
 
 @page("/lessons/{name}", router)
@@ -32,10 +33,10 @@ async def own(request: Request, given: Given, name: str) -> Response:
     if name not in given.lessons.own:
         raise HTTPException(404, f"There is no lesson named {name[:60]!r}.")
     lesson = given.lessons.own[name]
-    return _lesson(request, lesson.sim, lesson)
+    return _lesson(request, lesson.sim, lesson, f"lessons/{name}")
 
 
-def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
+def _lesson(request: Request, sim: AnySim, lesson: Lesson | None, path: str) -> Response:
     """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
     items = request.query_params.multi_items()
     params, query = links.read(sim, items), links.own(items)
@@ -44,6 +45,7 @@ def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
     address = str(request.url.replace(query=""))
     return rendering.render(
         request, "sim.html", sim=sim, lesson=lesson, query=query, scripts=code.shown(sim, params), address=address,
+        path=path, card=card(request, sim, lesson, path),
         code_of_address=segno.make(address, micro=False).svg_inline(scale=3, border=0),
     )  # fmt: skip
 

@@ -94,7 +94,7 @@ def viewer(
         "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
         "paste": None if sim.paste is None else {"longest": LONGEST},
         "label": {"ink": DARK.ink, "plate": DARK.page},
-        "main": module(request, "main.js"), "client": f"{client}/loader.js",
+        "share": static(request, "share.js"), "main": module(request, "main.js"), "client": f"{client}/loader.js",
         "still": {theme: static(request, f"thumbs/{sim.slug}-{theme}.webp") for theme in ("light", "dark")},
     }  # fmt: skip
     response = render(

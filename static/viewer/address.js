@@ -24,9 +24,9 @@ export class Address {
     return path + (search ? "?" + search : "");
   }
 
-  // A link that opens the sim in this state, in a room of its own.
-  get shared() {
-    return new URL(this.of(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, "/embed")), location.href).href;
+  // A link to a page of the sim in this state; to its embed, in a room of its own.
+  link(page) {
+    return new URL(this.of(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, `/${page}`)), location.href).href;
   }
 }
 

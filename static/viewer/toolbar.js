@@ -7,7 +7,7 @@ export class Toolbar {
     this.address = address;
     this.words = words;
     const does = {
-      share: () => this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state"),
+      share: (button) => this.share(button),
       code: () => this.copyCode(),
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
@@ -28,6 +28,15 @@ export class Toolbar {
       if (event.key === "?" && !event.target.matches?.("input[type=text], textarea")) showKeys();
       if (event.key === "Escape") document.querySelector(".s3-full")?.classList.remove("s3-full");
     }, true);
+  }
+
+  // The dialog comes from the server. When it doesn't come, the link is what matters.
+  async share(button) {
+    try {
+      await (await import(sim.share)).share(this.address.link("share"), button);
+    } catch {
+      this.copy(this.address.link("embed"), "Link copied. It opens this sim in exactly this state and view.", "Link to this state");
+    }
   }
 
   async copy(words, done, title) {

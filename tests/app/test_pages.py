@@ -35,9 +35,13 @@ ADDRESSES = {
     "bad link": f"/sims/{SIM.slug}?colour=red&view=1,2&controls=0",
     "bad link in a frame": f"/sims/{SIM.slug}/embed?colour=red",
     **{f"{sim.slug} without its scene": f"/sims/{sim.slug}/text" for sim in SIMS},
+    "sharing": f"/sims/{SIM.slug}/share?controls=some&lesson=1",
     "documentation": "/docs",
     "concepts": "/concepts",
     "about": "/about",
+    "developers": "/developers",
+    "example of a host": "/developers/example",
+    "check": "/check",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
 }
@@ -214,15 +218,6 @@ def test_sim_page_hands_its_query_on(client: httpx.Client, sim: AnySim) -> None:
     assert embed in page.links()
 
 
-@each_sim
-def test_embed_code_opens_the_sim_as_it_is(client: httpx.Client, server: Server, sim: AnySim) -> None:
-    page = get(client, f"/sims/{sim.slug}?controls=0&theme=dark")
-    frame = Document(page.all("pre")[-1].text).one("iframe")
-    assert frame.attributes["src"] == f"{server.url}/sims/{sim.slug}/embed?controls=0&theme=dark"
-    assert frame.attributes["title"] == sim.title
-    assert client.get(frame.attributes["src"]).status_code == 200
-
-
 def test_sim_page_leads_to_its_neighbours(client: httpx.Client) -> None:
     ways = [
         {
@@ -365,21 +360,8 @@ def test_address_links_and_code_follow_the_sim(page: Page, server: Server) -> No
     assert page.get_by_role("link", name="Full screen").evaluate("link => link.href") == (
         f"{place}/embed?yaw=45&name=%22&controls=0"
     )
-    frame = Document(page.locator("pre").inner_text()).one("iframe")
-    assert frame.attributes["src"] == f"{place}/embed?yaw=45&name=%22&controls=0"
-
-
-@pytest.mark.e2e
-@pytest.mark.parametrize("clipboard", [True, False], ids=["with a clipboard", "without, as on plain HTTP"])
-def test_embed_code_is_copied(page: Page, server: Server, clipboard: bool) -> None:
-    if not clipboard:
-        page.add_init_script("Object.defineProperty(navigator, 'clipboard', {value: undefined, writable: true})")
-    page.goto(f"{server.url}/sims/{SIM.slug}")
-    page.evaluate("document.querySelector('.for-teachers details').open = true")
-    page.get_by_role("button", name="Copy code").click()
-    page.get_by_role("status").get_by_text("Copied.").wait_for()
-    if clipboard:
-        Document(page.evaluate("navigator.clipboard.readText()")).one("iframe")
+    share = page.get_by_role("link", name="Share", exact=True)
+    assert share.evaluate("link => link.href") == f"{place}/share?yaw=45&name=%22&controls=0"
 
 
 @pytest.mark.e2e

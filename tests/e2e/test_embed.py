@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -105,10 +106,14 @@ def test_a_sandboxed_frame_works_too(classroom: Classroom, course: CourseSite) -
     learner.sees(seed=1, left_uv=[400.5, 212])
     assert learner.until(lambda: heard(learner, "sim3:state")[-1]["query"] == learner.sockets.state["query"])
 
-    learner.press("Share link")
-    link = learner.frame.get_by_role("textbox", name="Link").input_value()
-    assert link == f"{learner.url}/sims/triangulation/embed?{learner.query()}"
+    learner.press("Share")
+    link = learner.frame.get_by_role("textbox", name="Link to exactly this state")
+    assert link.input_value() == f"{learner.url}/sims/triangulation/embed?{learner.query()}"
+    learner.frame.get_by_role("button", name="Copy link").press("Enter")
+    learner.frame.get_by_role("status").get_by_text(re.compile("Copied|It is selected")).wait_for()
+    assert link.evaluate("field => document.activeElement === field && field.selectionEnd === field.value.length")
     learner.page.keyboard.press("Escape")
+    learner.until(lambda: learner.frame.evaluate("document.activeElement.textContent === 'Share'"))
     learner.press_keys("baseline", "Home")
     learner.sees(baseline=0.05)
 
