@@ -16,7 +16,7 @@ from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
 from app.rooms.places import Fairness
 from app.rooms.registry import Sessions
-from app.routes import about, api, code, files, lessons, links, pages, rendering, sockets, text, watching
+from app.routes import about, api, code, files, home, lessons, links, pages, rendering, sockets, text, watching
 from app.routes.answers import Answers, Busy, Gone
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
@@ -29,7 +29,7 @@ from sims.kit.viser_internals import ViserHost
 
 ROUTERS = (
     pages.router, lessons.router, code.router, text.router, about.router, api.router, sockets.router, files.router,
-    watching.router,
+    watching.router, home.router,
 )  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     bridge = Bridge(host, sessions, settings.origins)
     sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
-    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest)
+    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest, host)
 
 
 async def _bad_params(request: Request, error: Exception) -> Response:
