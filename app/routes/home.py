@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from fastapi import APIRouter, Request
-from fastapi.responses import Response
+from fastapi.responses import JSONResponse, Response
 
 from app.routes import links, rendering
 from app.routes.answers import Busy, found_for
@@ -33,6 +33,9 @@ from sims.kit.taken import Taken, TooLarge
 AnySim = Sim[Any, Any]
 FRAMES = 72
 """Frames of a sweep."""
+HEAVY = "This sim works too long for a sweep: its state can be taken home."
+ANYWHERE = {"access-control-allow-origin": "*"}
+"""Frames that are sandboxed have no origin."""
 OURS = ("sweep", "from", "to")
 SHEETS = ("tokens.css", "readouts.css", "viewer.css", "viser.css", "home.css")
 SCRIPTS = {"viewer": ("page.js", "view.js", "viser_dom.js"), "home": ("film.js",)}
@@ -53,6 +56,23 @@ class Wish:
     def states(self) -> list[Params]:
         """By frames."""
         return [self.params] if self.swept is None else [self.swept.state(self.params, v) for v in self.values]
+
+    @property
+    def told(self) -> list[dict[str, str]]:
+        """By frames of a sweep: the value for people, and the query of its live state."""
+        if self.swept is None:
+            return []
+        pairs = zip(self.values, self.states, strict=True)
+        return [{"words": self.swept.words(value), "query": state.query()} for value, state in pairs]
+
+
+@router.get("/sims/{slug}/sweeps")
+async def sweeps(request: Request, slug: str) -> Response:
+    """What can be swept in a state, for the page to offer."""
+    sim = sim_or_404(slug)
+    numbers = [] if sim.heavy else sweepable(_wish(sim, request.query_params.multi_items()).params)
+    offered = [{"name": n.name, "label": n.label, "low": n.low, "high": n.high, "unit": n.unit} for n in numbers]
+    return JSONResponse({"numbers": offered, "why": HEAVY if sim.heavy else ""}, headers=ANYWHERE)
 
 
 @router.get("/sims/{slug}/home")
@@ -80,7 +100,7 @@ def _headers(sim: AnySim, wish: Wish) -> dict[str, str]:
     name = f"sim3-{sim.slug}{what}-{_today()}.html"
     return {
         "content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store",
-        "access-control-allow-origin": "*", "access-control-expose-headers": "content-disposition",
+        **ANYWHERE, "access-control-expose-headers": "content-disposition",
     }  # fmt: skip
 
 
@@ -99,7 +119,7 @@ def _wish(sim: AnySim, items: list[tuple[str, str]]) -> Wish:
     if not asked:
         return Wish(params, options, None, ())
     if sim.heavy:
-        raise Refusal(422, "This sim works too long for a sweep. Take its state home.")
+        raise Refusal(422, HEAVY)
     known = {each.name: each for each in sweepable(params)}
     swept = known.get(asked.get("sweep", ""))
     if swept is None:
@@ -122,22 +142,19 @@ def _bound(swept: Swept, name: str, text: str | None, usual: float) -> float:
 
 
 def _page(request: Request, sim: AnySim, wish: Wish, taken: Taken) -> bytes:
-    view, parts = sim.home(wish.params, taken.solution), taken.parts[0]
-    states = wish.states
+    first, parts = wish.states[0], taken.parts[0]
+    view = sim.home(first, taken.solution)
     dark = wish.options.get("theme") == "dark"
     data = {
         "slug": sim.slug, "dark": dark, "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
         "label": {"ink": DARK.ink, "plate": DARK.page}, "socket": "", "viewer": "",
         "live": f"{str(request.base_url).rstrip('/')}/sims/{sim.slug}",
         "options": links.spelled({"view": wish.options["view"]}) if "view" in wish.options else "",
-        "sweep": [
-            {"words": wish.swept.words(value), "query": state.query()}
-            for value, state in zip(wish.values, states, strict=True) if wish.swept is not None
-        ],
+        "sweep": wish.told,
     }  # fmt: skip
     page = rendering.templates.get_template("home.html").render(
         sim=sim, data=data, date=_today(), theme="dark" if dark else "light", swept=wish.swept,
-        query=states[0].query(), parts=parts, panes=_panes(sim, states[0], taken), styles=_styles(),
+        query=first.query(), parts=parts, panes=_panes(sim, first, taken), styles=_styles(),
         folds=[name.partition(":")[2] for name in taken.recorded if name.startswith("read:") and name != "read:"],
         modules=_modules(), main=_bare(rendering.modules("home")["main.js"].decode()), client=viser_client.held(),
         film=b64encode(taken.packed()).decode(), marker=b64encode(taken.marker()).decode(),

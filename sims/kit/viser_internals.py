@@ -30,7 +30,7 @@ import numpy as np
 import viser
 import websockets.asyncio.server
 from viser._assignable_props_api import AssignablePropsBase
-from viser.infra._infra import WebsockClientConnection
+from viser.infra import WebsockClientConnection
 from websockets.exceptions import ConnectionClosedOK
 
 from sims.kit.outbox import Change, Outbox

@@ -30,6 +30,7 @@ class Home {
   // viser has shown its own recording, in which nothing is: from here on it shows ours.
   begin() {
     clearInterval(this.waiting);
+    document.head.append(document.getElementById("styles")); // viser's own came after them
     show(this.film.messages(this.frame));
     sim.liveAt = performance.now();
     describeScene(document.querySelector("[data-part=about]").textContent);
