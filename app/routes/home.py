@@ -124,7 +124,9 @@ def _wish(sim: AnySim, items: list[tuple[str, str]]) -> Wish:
     swept = known.get(asked.get("sweep", ""))
     if swept is None:
         raise Refusal(422, f"sweep: got {clipped(asked.get('sweep', ''))!r}, allowed: one of: {', '.join(known)}.")
-    begin, end = (_bound(swept, name, asked.get(name), usual) for name, usual in (("from", swept.low), ("to", swept.high)))
+    begin, end = (
+        _bound(swept, name, asked.get(name), usual) for name, usual in (("from", swept.low), ("to", swept.high))
+    )
     if begin == end:
         raise Refusal(422, f"from and to are both {clipped(asked['to'])}; a sweep needs two values.")
     return Wish(params, options, swept, swept.values(begin, end, FRAMES))

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import Any
 
-from sims.kit.outbox import Change, Message, Outbox, Window, body
+from sims.kit.outbox import Change, Message, Outbox, body
 
 UNUSED = ("ThemeConfigurationMessage", "ScenePointerEnableMessage")
 HELD = ("SetSceneNodeDragBindingsMessage", "SetSceneNodeClickBindingsMessage")
@@ -83,7 +83,9 @@ class Recording:
             self._set((name, ""), told)
         elif kind == UPDATE:
             for what, value in told["updates"].items():
-                self._change((name, what), {**told, "updates": {what: value}}, {"updates": {what: self._prop(name, what)}})
+                self._change(
+                    (name, what), {**told, "updates": {what: value}}, {"updates": {what: self._prop(name, what)}}
+                )
         elif kind != "RemoveSceneNodeMessage":
             self._change((name, kind), told, FIRST.get(kind, {}))
 

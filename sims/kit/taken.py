@@ -87,7 +87,11 @@ class Taken:
         """A recording of viser's own, in which nothing is but the node that says which frame is shown: none yet."""
         told = [self.recording.told(VERSION), {**self.recording.told(VERSION, MOVED), "position": (-1.0, 0.0, 0.0)}]
         packed = msgspec.msgpack.encode(
-            {"durationSeconds": 0.0, "messages": [(0.0, message) for message in told], "viserVersion": viser.__version__}
+            {
+                "durationSeconds": 0.0,
+                "messages": [(0.0, message) for message in told],
+                "viserVersion": viser.__version__,
+            }
         )
         inner = len(packed).to_bytes(8, "little") + packed
         return len(inner).to_bytes(8, "little") + zstandard.ZstdCompressor().compress(inner)
@@ -115,4 +119,3 @@ def _parts(sim: Sim[Any, Any], params: Params, solution: Any) -> Parts:
 def _idle(html: str) -> str:
     """Read-outs without the buttons in them."""
     return re.sub(r"<button[^>]*>(.*?)</button>", r"\1", re.sub(r'<button[^>]*class="s3-copy".*?</button>', "", html))
-

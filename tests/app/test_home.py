@@ -11,12 +11,15 @@ import pytest
 from app.routes import answers, home
 from geometry import GeometryError
 from sims import SIMS
-from sims.kit.sim import Sim
 from sims.kit import taken
+from sims.kit.sim import Sim
 from tests.app.conftest import Local
 
 
-def test_the_file_says_what_it_is_and_asks_for_nothing(http: httpx.Client, local: Local) -> None:
+def test_the_file_says_what_it_is_and_asks_for_nothing(
+    http: httpx.Client, local: Local, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(home, "FRAMES", 3)
     sessions = local.sessions
     answer = http.get("/sims/euler-angles/home?yaw=45&sweep=pitch&from=−60&to=60&theme=dark&view=1,2,3,0,0,0")
     assert answer.status_code == 200

@@ -45,7 +45,9 @@ class Film:
         return model
 
     def words(self, frame: int) -> dict[str, str]:
-        return {name: self.told["texts"][k] for name, k in zip(self.told["parts"], self.told["said"][frame], strict=True)}
+        return {
+            name: self.told["texts"][k] for name, k in zip(self.told["parts"], self.told["said"][frame], strict=True)
+        }
 
     def _whole(self, value: Any) -> Any:
         if isinstance(value, list):
@@ -66,12 +68,11 @@ def seen(model: SceneModel) -> dict[str, Any]:
 def test_each_frame_is_what_a_viewer_of_its_state_sees(sim: AnySim) -> None:
     first = sim.params.from_query(())
     swept = next(sweepable(first))
-    states = [swept.state(first, value) for value in swept.values(swept.low, swept.high, 5)]
+    states = [swept.state(first, value) for value in swept.values(swept.low, swept.high, 4)]
     found = Taken(shared_host().viser, sim, states, (), dark=False)
     film = Film(found.packed())
     with Rig(sim, states[0]) as rig:
-        for frame in (0, 3, 1, len(states) - 1):
-            frame = min(frame, len(states) - 1)
+        for frame in (0, len(states) - 1):
             rig.show(states[frame])
             there, wanted = seen(film.model(frame)), seen(rig.model)
             assert there.keys() == wanted.keys()
