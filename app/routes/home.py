@@ -32,11 +32,11 @@ from sims.kit.taken import Taken, TooLarge
 
 AnySim = Sim[Any, Any]
 FRAMES = 72
-"""Frames of a sweep."""
+"""Frames that a sweep has, unless fewer are asked for."""
 HEAVY = "This sim works too long for a sweep: its state can be taken home."
 ANYWHERE = {"access-control-allow-origin": "*"}
 """Frames that are sandboxed have no origin."""
-OURS = ("sweep", "from", "to")
+OURS = ("sweep", "from", "to", "frames")
 SHEETS = ("tokens.css", "readouts.css", "viewer.css", "viser.css", "home.css")
 SCRIPTS = {"viewer": ("page.js", "view.js", "viser_dom.js"), "home": ("film.js",)}
 """What static/home/main.js imports, with what that imports."""
@@ -129,7 +129,13 @@ def _wish(sim: AnySim, items: list[tuple[str, str]]) -> Wish:
     )
     if begin == end:
         raise Refusal(422, f"from and to are both {clipped(asked['to'])}; a sweep needs two values.")
-    return Wish(params, options, swept, swept.values(begin, end, FRAMES))
+    return Wish(params, options, swept, swept.values(begin, end, _frames(asked.get("frames", f"{FRAMES}"))))
+
+
+def _frames(text: str) -> int:
+    if not (text.isdecimal() and len(text) < 4 and 2 <= int(text) <= FRAMES):
+        raise Refusal(422, f"frames: got {clipped(text)!r}, allowed: a whole number from 2 to {FRAMES}.")
+    return int(text)
 
 
 def _bound(swept: Swept, name: str, text: str | None, usual: float) -> float:

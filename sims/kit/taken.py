@@ -77,7 +77,8 @@ class Taken:
         said = [[texts.setdefault(parts.get(name, ""), len(texts)) for name in self.recorded] for parts in self.parts]
         arrays = self.recording.arrays
         told = {
-            **self.recording.json(), "parts": self.recorded, "texts": list(texts), "said": said, "lengths": [*map(len, arrays)]
+            **self.recording.json(), "parts": self.recorded, "texts": list(texts), "said": said,
+            "lengths": [*map(len, arrays)],
         }  # fmt: skip
         head = json.dumps(told, allow_nan=False).encode()
         pieces = [len(head).to_bytes(8, "little"), *map(_filled, [head, *arrays])]
@@ -111,9 +112,13 @@ def _parts(sim: Sim[Any, Any], params: Params, solution: Any) -> Parts:
         "caption": escape(sim.caption(params, solution)),
         "about": escape(sim.describe(params, solution)),
         **{f"read:{title}": _idle(readout.still(those)) for title, those in read.items()},
-        **{f"pane:{each.name}": f"<figcaption><b>{pane.safe(each.title)}<span> {escape(each.note)}</span></b></figcaption>"
-           + pane.still(each) for each in panes},
+        **{f"pane:{each.name}": _picture(each) for each in panes},
     }  # fmt: skip
+
+
+def _picture(each: pane.Pane) -> str:
+    title = f"<b>{pane.safe(each.title)}<span> {escape(each.note)}</span></b>"
+    return f"<figcaption>{title}</figcaption>{pane.still(each)}"
 
 
 def _idle(html: str) -> str:

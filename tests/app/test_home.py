@@ -16,12 +16,9 @@ from sims.kit.sim import Sim
 from tests.app.conftest import Local
 
 
-def test_the_file_says_what_it_is_and_asks_for_nothing(
-    http: httpx.Client, local: Local, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(home, "FRAMES", 3)
+def test_the_file_says_what_it_is_and_asks_for_nothing(http: httpx.Client, local: Local) -> None:
     sessions = local.sessions
-    answer = http.get("/sims/euler-angles/home?yaw=45&sweep=pitch&from=−60&to=60&theme=dark&view=1,2,3,0,0,0")
+    answer = http.get("/sims/euler-angles/home?yaw=45&sweep=pitch&from=−60&to=60&frames=3&theme=dark&view=1,2,3,0,0,0")
     assert answer.status_code == 200
     name = re.search(r'filename="(.*)"', answer.headers["content-disposition"])
     assert name is not None
@@ -63,6 +60,8 @@ def test_a_sim_that_works_long_offers_its_state_alone(http: httpx.Client) -> Non
         ("sweep=yaw&from=5&to=5", "from and to are both 5"),
         ("sweep=yaw&yaw=1000", "yaw: got '1000'"),
         ("nothing=1", "nothing: got '1'"),
+        ("sweep=yaw&frames=73", "frames: got '73', allowed: a whole number from 2 to 72"),
+        ("sweep=yaw&frames=1", "frames: got '1', allowed"),
     ],
 )
 def test_what_cant_be_taken_is_said(http: httpx.Client, query: str, words: str) -> None:
