@@ -22,6 +22,7 @@ from app.routes import (
     code,
     developers,
     files,
+    home,
     lessons,
     links,
     oembed,
@@ -44,7 +45,8 @@ from sims.kit.viser_internals import ViserHost
 
 ROUTERS = (
     pages.router, lessons.router, code.router, text.router, sharing.router, oembed.router, developers.router,
-    about.router, api.router, sockets.router, files.router, watching.router,
+    about.router, api.router, sockets.router, files.router,
+    home.router, watching.router,
 )  # fmt: skip
 
 
@@ -90,7 +92,7 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     bridge = Bridge(host, sessions, settings.origins)
     sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
-    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest)
+    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest, host)
 
 
 async def _bad_params(request: Request, error: Exception) -> Response:

@@ -13,6 +13,7 @@ from app.rooms.registry import Sessions
 from app.routes.answers import Answers
 from app.routes.coming import Coming
 from app.sockets.bridge import Bridge
+from sims.kit.viser_internals import ViserHost
 
 
 @dataclass
@@ -26,6 +27,7 @@ class Services:
     coming: Coming
     largest: int
     """Bytes that a file may have."""
+    host: ViserHost
 
 
 def _services(connection: HTTPConnection) -> Services:

@@ -219,6 +219,7 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<button type="button" data-s3="share">Share</button>'
         '<button type="button" data-s3="code" title="A Python script with the numbers of now">Copy code</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
+        '<button type="button" data-s3="take-home">Take it home</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
         f"{files}</div>"
     )

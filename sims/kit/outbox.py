@@ -107,7 +107,7 @@ class Outbox:
         arrays: list[memoryview] = []
         packed = _pack(
             {
-                "messages": [_body(message, arrays) for message in waiting.values()],
+                "messages": [body(message, arrays) for message in waiting.values()],
                 "timestampSec": time.perf_counter(),
                 "binaryBufferLengths": [array.nbytes for array in arrays],
             }
@@ -182,7 +182,8 @@ def _rest(window: Window, waits_for: Any) -> Generator[Any, Any, None]:
     yield from window.__await__()
 
 
-def _body(message: Change | Message, arrays: list[memoryview]) -> dict[str, Any]:
+def body(message: Change | Message, arrays: list[memoryview]) -> dict[str, Any]:
+    """A message ready for the wire; its arrays are appended."""
     if not isinstance(message, Change):
         return message.as_serializable_dict(arrays)
     if message.array is None:

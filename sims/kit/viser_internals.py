@@ -10,6 +10,7 @@ Why each is needed:
   behind what is shown, and they cost 40 µs each. `set_pose` compares exactly and costs a tenth.
 - Every handle works out the type hints of its properties anew, which is half the cost of opening a sim;
   here each kind of handle does so once.
+- A scene is recorded for a file through a client that no browser stands behind; viser knows no such client.
 - Assigning any other property resolves type hints each time (30 µs for an array); `set_property` doesn't.
 """
 
@@ -29,10 +30,13 @@ import numpy as np
 import viser
 import websockets.asyncio.server
 from viser._assignable_props_api import AssignablePropsBase
+from viser.infra import WebsockClientConnection
 from websockets.exceptions import ConnectionClosedOK
 
 from sims.kit.outbox import Change, Outbox
 
+NOBODY: Any = -1
+"""Number of a client without a browser; viser counts its own from 0."""
 PROTOCOL = f"viser-v{viser.__version__}"
 
 
@@ -125,6 +129,16 @@ class ViserHost:
     def wire_of(self, client: viser.ClientHandle) -> Wire:
         """The connection that a client handle belongs to."""
         return self.server._websock_server._live_connections[client.client_id]  # type: ignore[return-value]
+
+    def alone(self, outbox: Outbox) -> viser.ClientHandle:
+        """A client without a browser: what it is sent stays in its outbox."""
+        state: Any = SimpleNamespace(message_buffer=outbox, event_loop=self.loop)
+        client = viser.ClientHandle(WebsockClientConnection(NOBODY, state), self.server)
+        vars(client.camera._state).update(
+            update_timestamp=1.0, image_width=4, image_height=3, position=np.array([0.0, -5.0, 2.0]),
+            up_direction=np.array([0.0, 0.0, 1.0]),
+        )  # fmt: skip
+        return client
 
     def stop(self) -> None:
         """End viser's loop and thread."""

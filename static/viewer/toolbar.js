@@ -1,16 +1,19 @@
 // The buttons that every sim has: share, save the picture, keys, downloads.
 import { column, element, sim } from "./page.js";
+import { TakeHome } from "./take_home.js";
 import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
   constructor(address, words, files, view, paste) {
     this.address = address;
     this.words = words;
+    this.takeHome = new TakeHome(address, dialog);
     const does = {
       share: (button) => this.share(button),
       code: () => this.copyCode(),
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
+      "take-home": () => this.takeHome.open(),
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
       enlarge: (button) => enlarge(button.closest("figure")),

@@ -36,8 +36,23 @@ export function prepare(view, looked, blind) {
   adopt(looked);
 }
 
+// A page without a server holds the client as viser ships it: a script with its code as data beside it.
 export function start() {
-  document.body.append(Object.assign(document.createElement("script"), { src: sim.client, crossOrigin: "anonymous" }));
+  const script = document.createElement("script");
+  const held = document.getElementById("client");
+  if (held) {
+    Object.assign(script.dataset, held.dataset);
+    script.textContent = held.textContent;
+  } else {
+    Object.assign(script, { src: sim.client, crossOrigin: "anonymous" });
+  }
+  document.body.append(script);
+}
+
+// Messages as a server would send them.
+export function show(messages) {
+  viewer.messageQueue.push(...messages);
+  viewer.requestRender();
 }
 
 // Whether there is WebGL is seen when viser asks for it: to ask beforehand takes up to 0.4 s without a GPU.

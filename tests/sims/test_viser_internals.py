@@ -30,6 +30,7 @@ from websockets.exceptions import ConnectionClosedOK
 
 from sims import SIMS
 from sims.kit import viser_internals
+from sims.kit.recording import Recorder
 from sims.kit.viser_internals import (
     PROTOCOL,
     ViserHost,
@@ -99,6 +100,18 @@ def test_handles_keep_state_where_we_read_it() -> None:
     assert {"name", "props", "api", "wxyz", "position", "visible"} <= names
     names = {f.name for f in dataclasses.fields(_GuiHandleState)}
     assert {"uuid", "value", "props", "gui_api"} <= names
+
+
+def test_a_client_without_a_browser_is_as_one_with_one(rig: Rig) -> None:
+    outbox = Recorder(rig.host.viser.loop)
+    client = rig.host.viser.alone(outbox)
+    assert vars(client.camera._state).keys() == vars(rig.browser.client.camera._state).keys()
+    assert client.camera.image_width > client.camera.image_height > 0
+    client.scene.add_frame("/alone")
+    client.flush()
+    assert "/alone" in [getattr(message, "name", "") for message in outbox.taken()]
+    assert outbox.taken() == []
+    assert client.client_id not in rig.host.viser.server.get_clients()
 
 
 def test_type_hints_of_a_handle_are_those_that_viser_would_work_out(rig: Rig) -> None:
