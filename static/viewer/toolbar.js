@@ -3,17 +3,18 @@ import { column, element, sim } from "./page.js";
 import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
-  constructor(address, words, files, view, paste) {
+  constructor(address, words, files, view, paste, live) {
     this.address = address;
     this.words = words;
     const does = {
       share: () => this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state"),
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
+      present: () => live.present(),
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
       enlarge: (button) => enlarge(button.closest("figure")),
-      home: () => view.goHome(),
+      home: () => view.look("home"),
       "give-up": () => files.giveUp(),
       take: () => paste.take(),
       close: (button) => button.closest("dialog").close(),
@@ -64,11 +65,12 @@ function download(href, name) {
   link.remove();
 }
 
-function dialog(title, html) {
+export function dialog(title, html) {
   document.querySelector("dialog.s3-dialog")?.remove();
   const box = element("dialog", { class: "s3-dialog", "aria-label": title });
   box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close">Close</button>`;
   box.showModal();
+  return box;
 }
 
 function showKeys() {
