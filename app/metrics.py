@@ -45,7 +45,7 @@ class Now(Collector):
         self._refused = refused
 
     def collect(self) -> Iterator[Metric]:
-        """Of the moment."""
+        """What there is just now."""
         sessions = GaugeMetricFamily("sim3_sessions", "Sessions that are open", labels=["sim"])
         viewers = GaugeMetricFamily("sim3_viewers", "Scenes that are looked at", labels=["sim"])
         for sim, (open_, seen) in self._by_sim().items():

@@ -16,7 +16,7 @@ from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
 from app.rooms.places import Fairness
 from app.rooms.registry import Sessions
-from app.routes import api, files, lessons, links, pages, rendering, sockets, text, watching
+from app.routes import about, api, code, files, lessons, links, pages, rendering, sockets, text, watching
 from app.routes.answers import Answers, Busy, Gone
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
@@ -27,7 +27,10 @@ from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router, watching.router)
+ROUTERS = (
+    pages.router, lessons.router, code.router, text.router, about.router, api.router, sockets.router, files.router,
+    watching.router,
+)  # fmt: skip
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:

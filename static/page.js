@@ -22,9 +22,9 @@ function follow(query) {
 }
 
 function showCode() {
-  const full = document.querySelector("[data-follows]");
+  const link = document.querySelector("[data-follows]");
   const place = document.querySelector("[data-embed]");
-  if (full && place) place.textContent = full.href.replaceAll("&", "&amp;").replaceAll('"', "&quot;");
+  if (link && place) place.textContent = link.href.replaceAll("&", "&amp;").replaceAll('"', "&quot;");
 }
 
 // When the reader's system turns dark or light, the page follows by its CSS, the sim by loading anew: its address
@@ -33,13 +33,21 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (frame && !document.documentElement.dataset.theme) frame.contentWindow.location.reload();
 });
 
+// The sim at full screen stays the one of the page; where browsers don't do that, the link opens one of its own.
+const full = document.querySelector(".stage .full");
+full?.addEventListener("click", (event) => {
+  if (!document.fullscreenEnabled || event.ctrlKey || event.metaKey || event.shiftKey) return;
+  event.preventDefault();
+  frame.parentElement.requestFullscreen().catch(() => location.assign(full.href));
+});
+
 for (const button of document.querySelectorAll("[data-copy]")) {
   button.hidden = false;
   button.addEventListener("click", () => copy(button));
 }
 
 async function copy(button) {
-  const section = button.closest("section");
+  const section = button.closest(".script, .snippet");
   const code = section.querySelector("pre");
   const status = section.querySelector("[role=status]");
   status.textContent = "";

@@ -14,6 +14,8 @@ from app.lessons import questions
 from app.lessons.state import AnySim, State, setting, shown
 from sims.kit.challenge import Challenge
 
+NBSP = "\u00a0"
+"""Keeps the line on which it is said how near one is."""
 COMMIT = '<button class="button" type="submit">That is my prediction</button>'
 
 
@@ -37,6 +39,7 @@ class Wrong(Exception):
 
 def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
     """A question whose answer is worked out from a state, or from two. Raises Wrong."""
+    _not_empty(info, inside)
     found = questions.PREDICT.fullmatch(info)
     if found is None:
         raise Wrong(f"::: {info}", questions.WRITTEN)
@@ -51,16 +54,26 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
     kind = "set" if found["set"] else "number" if found["within"] else "choice"
     if kind == "choice":
         _one_fits(box.items, answer)
+    elif isinstance(answer, bool) or not isinstance(answer, int | float):
+        raise Wrong(f"{found['path']}, which is {answer!r}", "a number, where one is typed or set")
     data = {
         "kind": kind, "path": found["path"], "within": float(found["within"] or 0), "answer": answer,
+        "said": "" if kind == "choice" else shown(sim, found["path"]).text(answer),
         "to": setting(to), "from": None if before is None else setting(before),
     }  # fmt: skip
     asks = {"set": _set, "number": _number, "choice": _choices}[kind](sim, found["path"], box.items, answer, hand)
     return (
         f'<form class="box predict" data-predict="{escape(json.dumps(data))}"><fieldset><legend>Predict</legend>'
         f'{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
-        f'<div class="why">{hand.blocks(box.answer)}</div></form>'
+        f'<p class="room">Your answer:</p><div class="why">{hand.blocks(box.answer)}</div></form>'
     )
+
+
+def _not_empty(info: str, inside: Sequence[Token]) -> None:
+    if not inside:
+        raise Wrong(
+            f"::: {info}, an empty box", "a question, the choices if there are any, a line of --- and the answer"
+        )
 
 
 def _one_fits(items: Sequence[questions.Item], answer: Any) -> None:
@@ -98,6 +111,7 @@ def _choice(words: str, value: str, *, right: bool) -> str:
 
 def check(inside: Sequence[Token], hand: Hand) -> str:
     """A question with its choices, each with the reason why somebody picks it, and a worked answer. Raises Wrong."""
+    _not_empty("check", inside)
     box = questions.opened(inside)
     if [item.right for item in box.items].count(True) != 1 or any(item.right is None for item in box.items):
         raise Wrong("::: check", "choices as - [ ] wrong and exactly one - [x] right")
@@ -127,6 +141,6 @@ def challenge(known: Sequence[Challenge[Any, Any]], info: str, inside: Sequence[
     return (
         f'<div class="box challenge" data-challenge="{escape(each.id)}" id="challenge-{escape(each.id)}">'
         f'<p class="label">Challenge</p><p><strong>{escape(each.title)}</strong></p><p>{escape(each.goal)}</p>'
-        f'<progress max="1" value="0" aria-label="How near"></progress><p class="near" role="status"></p>{hint}'
+        f'<progress max="1" value="0" aria-label="How near"></progress><p class="near">{NBSP}</p>{hint}'
         '<p class="room">Your answer:</p></div>'
     )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator, Sequence
-from html import escape
+from html import escape, unescape
+from itertools import pairwise
 from typing import NamedTuple, cast
 from urllib.parse import unquote
 
@@ -33,6 +34,8 @@ class Step(NamedTuple):
     state: State
     words: str
     """Its first sentence, as plain text."""
+    challenges: tuple[str, ...]
+    """Those that stand in it, by their ids."""
 
 
 class Section(NamedTuple):
@@ -44,11 +47,18 @@ class Section(NamedTuple):
     step: Step | None = None
 
 
+Links = Callable[[str], None]
+"""Looks at a link to another page of this server. Raises LookupError in words."""
+
+
 class Writer:
     """Makes the sections of one lesson; what is wrong is added to `mistakes`."""
 
-    def __init__(self, md: MarkdownIt, sim: AnySim, library: tuple[Library, ...], mistakes: list[Mistake]) -> None:
+    def __init__(
+        self, md: MarkdownIt, sim: AnySim, library: tuple[Library, ...], mistakes: list[Mistake], links: Links
+    ) -> None:
         self._md = md
+        self._links = links
         self._renderer = cast(RendererHTML, md.renderer)
         self._sim = sim
         self._library = library
@@ -56,6 +66,8 @@ class Writer:
         self._state = read(sim, "", library)
         self._line = 1
         self._ids: set[str] = set()
+        self._parts: list[tuple[int, str]] = []  # lines and targets of links to a part of this lesson
+        self._challenges: list[str] = []
         self.teacher = ""
         self.concepts: list[str] = []
         rules: dict[str, Callable[[Token], str]] = {
@@ -74,8 +86,16 @@ class Writer:
         ]
         if before := tokens[: starts[0] if starts else len(tokens)]:
             yield Section("start", "", self._blocks(before))
-        for k, end in zip(starts, [*starts[1:], len(tokens)], strict=True):
+        for k, end in pairwise([*starts, len(tokens)]):
             yield self._section(tokens[k + 1], tokens[k + 3 : end])
+        self._find_parts()
+
+    def _find_parts(self) -> None:
+        """Links to a part of this lesson lead to one that is there."""
+        for line_, part in self._parts:
+            if part not in self._ids:
+                self._line = line_
+                self._wrong(f"a link to #{part}", "one of " + ", ".join(f"#{each}" for each in sorted(self._ids)))
 
     def _section(self, heading: Token, body: Sequence[Token]) -> Section:
         self._line = line(heading)
@@ -87,10 +107,28 @@ class Writer:
         if (state := self._read(unquote(str(link.attrs["href"])))) is None:
             return Section(slug, title, "")
         self._state = state
-        first = next((words(token) for token in body if token.type == "inline"), "")
+        before = len(self._challenges)
+        html = self._blocks(body)
+        step = Step(slug, title, state, self._sentence(body), tuple(self._challenges[before:]))
+        return Section(slug, title, html, step)
+
+    def _sentence(self, body: Sequence[Token]) -> str:
+        """The first sentence, as plain text with the numbers of the state."""
+        first = next((words(token, self._said) for token in body if token.type == "inline"), "")
         said = SENTENCE.match(first)
-        step = Step(slug, title, state, said[0] if said else first)
-        return Section(slug, title, self._blocks(body), step)
+        return said[0] if said else first
+
+    def _said(self, token: Token) -> str:
+        if token.type == "math_inline":
+            made = formula.mathml(token.content, block=False, live=lambda what: self._value(what, "mn"))
+            return unescape(re.sub(r"<[^>]*>", "", made))
+        if token.type != "live":
+            return token.content
+        kind, what = token.meta["kind"], token.meta["what"]
+        if kind == "concept":
+            return _named(what)
+        number = shown(self._sim, what)
+        return number.text(self._state.value(number.path))
 
     def _id(self, title: str) -> str:
         slug = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") or "part"
@@ -144,66 +182,73 @@ class Writer:
                 return boxes.predict(self._sim, info, inside, hand)
             if kind == "check":
                 return boxes.check(inside, hand)
-            return boxes.challenge(self._sim.challenges, info, inside, hand)
+            html = boxes.challenge(self._sim.challenges, info, inside, hand)
         except Wrong as wrong:
             return self._wrong(wrong.found, wrong.allowed)
+        name = info.split()[1]
+        if name in self._challenges:
+            return self._wrong(f"::: {info}", "each challenge once")
+        self._challenges.append(name)
+        self._ids.add(f"challenge-{name}")
+        return html
 
     def _state_of(self, query: str) -> State:
         try:
             return read(self._sim, query, self._library)
         except LookupError as error:
-            raise Wrong(f"the state {query}", error.args[0]) from None
+            raise Wrong(f"the state {query}", str(error.args[0])) from None
 
     # ---- what stands in the text
 
     def _live(self, token: Token) -> str:
         kinds: dict[str, Callable[[str], str]] = {"value": self._value, "drag": self._drag, "concept": self._concept}
+        self._line = line(token)
         return kinds[token.meta["kind"]](token.meta["what"])
 
-    def _value(self, what: str, tag: str = "output") -> str:
+    def _value(self, what: str, tag: str = "span") -> str:
         try:
             value = shown(self._sim, what)
             return value.html(self._state.value(value.path), tag)
         except LookupError as error:
-            return self._wrong(f"{{value:{what}}}", error.args[0])
+            return self._wrong(f"{{value:{what}}}", str(error.args[0]))
 
     def _drag(self, name: str) -> str:
-        kind = self._sim.params.numeric.get(name)
-        if kind is None or not isinstance(value := self._state.given[name], (int, float)):
-            numbers = [n for n in self._sim.params.numeric if isinstance(self._state.given[n], (int, float))]
-            return self._wrong(f"{{drag:{name}}}", "one of " + ", ".join(numbers))
-        low, high = self._state.params.bounds(name)
-        number = shown(self._sim, name)
+        held = self._state.numbers.get(name)
+        if held is None:
+            return self._wrong(f"{{drag:{name}}}", "one of " + ", ".join(self._state.numbers))
+        low, high = held.bounds
         return (
-            f'<span class="drag"><input type="text" inputmode="decimal" role="spinbutton" size="1" value="{value:g}" '
-            f'autocomplete="off" data-drag="{name}" data-step="{kind.step:g}" aria-valuemin="{low:g}" '
-            f'aria-valuemax="{high:g}" aria-valuenow="{value:g}" aria-label="{escape(self._state.params.label(name))}">'
-            f"{escape(number.unit)}</span>"
+            f'<span class="drag"><input type="text" inputmode="decimal" role="spinbutton" size="1" '
+            f'value="{held.value:g}" autocomplete="off" data-drag="{name}" data-step="{held.step:g}" '
+            f'aria-valuemin="{low:g}" aria-valuemax="{high:g}" aria-valuenow="{held.value:g}" '
+            f'aria-label="{escape(held.label)}">{escape(held.unit)}<span role="alert"></span></span>'
         )
 
     def _concept(self, what: str) -> str:
-        slug, _, said = what.partition(":")
+        slug = what.partition(":")[0]
         if slug not in CONCEPTS:
             return self._wrong(f"{{concept:{what}}}", "one of " + ", ".join(CONCEPTS))
+        if slug in self.concepts:
+            return self._wrong(f"{{concept:{what}}}", "each concept once")
         self.concepts.append(slug)
-        return f'<dfn id="concept-{slug}">{escape(said.replace("_", " ") or CONCEPTS[slug])}</dfn>'
+        self._ids.add(f"concept-{slug}")
+        return f'<dfn id="concept-{slug}">{escape(_named(what))}</dfn>'
 
     def _math(self, token: Token) -> str:
         block = token.type != "math_inline"
+        self._line = line(token)
         try:
             made = formula.mathml(token.content, block=block, live=lambda what: self._value(what, "mn"))
         except ValueError as error:
             return self._wrong(str(error), "LaTeX that stands in a formula of a textbook, and {value:…}")
         for name in formula.points(token.content):
-            if f'data-link="{escape(name)}' not in self._state.column:
-                linked = sorted(
-                    {each for names in re.findall(r'data-link="([^"]*)"', self._state.column) for each in names.split()}
-                )
-                self._wrong(f"\\point{{{name}}}", "one of " + ", ".join(linked))
+            if name not in self._state.linked:
+                self._wrong(f"\\point{{{name}}}", "one of " + ", ".join(sorted(self._state.linked)))
         return made
 
     def _link(self, token: Token) -> str:
         href = unquote(str(token.attrs["href"]))
+        self._line = line(token)
         if href.startswith("?"):
             state = self._read(href)
             set_ = "" if state is None else escape(json.dumps(setting(state)))
@@ -211,12 +256,21 @@ class Writer:
         live = f' data-href="{escape(href)}"' if LIVE.search(href) else ""
         href = LIVE.sub(lambda found: self._spelled(found[2]), href)
         if href.startswith("/"):
-            return f'<a href="..{escape(href)}"{live.replace("/", "../", 1)}>'
+            return self._inside(href, live)
         if href.startswith("#"):
+            self._parts.append((self._line, href[1:]))
             return f'<a href="{escape(href)}">'
         if not href.startswith(OUTSIDE):
-            return self._wrong(f"a link to {href}", "?state, /page of this server, #part, or https://…")
+            return self._wrong(f"a link to {href}", "?state, /sims/…, /concepts/…, #part, or https://…")
         return f'<a href="{escape(href)}" rel="noreferrer">'
+
+    def _inside(self, href: str, live: str) -> str:
+        """A link to another page of this server."""
+        try:
+            self._links(href)
+        except LookupError as error:
+            return self._wrong(f"a link to {href}", str(error.args[0]))
+        return f'<a href="..{escape(href)}"{live.replace("/", "../", 1)}>'
 
     def _spelled(self, what: str) -> str:
         """A value as it stands in a link."""
@@ -224,8 +278,10 @@ class Writer:
             value = shown(self._sim, what)
             found = self._state.value(value.path)
         except LookupError as error:
-            return self._wrong(f"{{value:{what}}}", error.args[0])
+            return self._wrong(f"{{value:{what}}}", str(error.args[0]))
         numbers = found if isinstance(found, list) else [found]
+        if not all(isinstance(each, int | float) for each in numbers):
+            return self._wrong(f"{{value:{what}}} in a link", "a number, or a list of numbers")
         return ",".join(f"{each:.{value.digits or 6}g}" for each in numbers)
 
     # ---- what is wrong
@@ -240,6 +296,12 @@ class Writer:
     def _wrong(self, found: str, allowed: str) -> str:
         self._mistakes.append(Mistake(self._line, found, allowed))
         return ""
+
+
+def _named(concept: str) -> str:
+    """What a text calls a concept, as in {concept:quaternion:unit_quaternion}."""
+    slug, _, said = concept.partition(":")
+    return said.replace("_", " ") or CONCEPTS.get(slug, "")
 
 
 def _by_line(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:

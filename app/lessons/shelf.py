@@ -5,8 +5,10 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from threading import Lock
+from typing import NamedTuple
 
 from app.lessons.errors import LessonError, Mistake
 from app.lessons.lesson import Lesson, load
@@ -17,6 +19,15 @@ from sims.kit.sim import Library
 log = logging.getLogger("sim3")
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 LEARNT = re.compile(r"\{concept:([a-z0-9-]+)")
+MINUTES = re.compile(r"^minutes:\s*(\d+)\s*$", re.MULTILINE)
+
+
+class Outline(NamedTuple):
+    """What the course says of a sim's lesson, which needn't be loaded for it."""
+
+    minutes: int | None
+    concepts: tuple[str, ...]
+    """Slugs of those that are learnt in it."""
 
 
 class Shelf:
@@ -49,10 +60,15 @@ class Shelf:
         for sim in self._sims:
             self.of_sim(sim)
 
+    @cached_property
+    def outlines(self) -> dict[str, Outline]:
+        """The lessons of the sims, by their slugs, as far as there are any."""
+        return {sim.slug: _outline(place(sim).read_text("utf-8")) for sim in self._sims if place(sim).is_file()}
+
+    @cached_property
     def concepts(self) -> dict[str, str]:
         """In which sim's lesson, by its slug, each concept is learnt."""
-        found = {sim.slug: LEARNT.findall(place(sim).read_text("utf-8")) for sim in self._sims if place(sim).is_file()}
-        return {concept: slug for slug, concepts in found.items() for concept in concepts}
+        return {concept: slug for slug, outline in self.outlines.items() for concept in outline.concepts}
 
     def _load(self, path: Path, name: str) -> Lesson:
         return load(path, name, self._sims, self._given)
@@ -66,6 +82,15 @@ class Shelf:
         except LessonError as error:
             self.broken[path.name] = error
             log.warning("not a lesson:\n%s", error)
+        except Exception as error:  # whatever is in the file: the server starts without it
+            wrong = Mistake(1, f"the file can't be made into a lesson ({type(error).__name__})", "docs/lessons.md")
+            self.broken[path.name] = LessonError(path.name, [wrong])
+            log.exception("not a lesson: %s", path.name)
+
+
+def _outline(text: str) -> Outline:
+    minutes = MINUTES.search(text)
+    return Outline(int(minutes[1]) if minutes else None, tuple(LEARNT.findall(text)))
 
 
 def place(sim: AnySim) -> Path:

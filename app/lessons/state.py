@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+import logging
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
-from typing import Any
+from html import escape, unescape
+from typing import Any, NamedTuple
 from urllib.parse import parse_qsl
 
 from app.routes import links
 from geometry import GeometryError
 from sims.kit.column import Column
-from sims.kit.controls import unit_of
+from sims.kit.controls import letters, unit_of
+from sims.kit.fields import Vector
+from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
+from sims.kit.spelling import shown_number
 
 AnySim = Sim[Any, Any]
 NOTHING = "–"
+LONGEST = 16
+"""Entries of a row of numbers that a text can show."""
+log = logging.getLogger("sim3")
+
+
+class Held(NamedTuple):
+    """A number that can be dragged in the text."""
+
+    value: float
+    bounds: tuple[float, float]
+    label: str
+    step: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -36,7 +54,7 @@ class State:
 
     @cached_property
     def solution(self) -> Any:
-        """Of the parameters."""
+        """What follows from the parameters."""
         return self.sim.solve(self.params, *self.library)
 
     @cached_property
@@ -54,6 +72,28 @@ class State:
         """All that stands beside the scene."""
         return Column(self.sim, self.library).html(self.params, self.solution)
 
+    @cached_property
+    def linked(self) -> set[str]:
+        """Names of all that can be pointed at."""
+        return {unescape(name) for names in re.findall(r'data-link="([^"]*)"', self.column) for name in names.split()}
+
+    @property
+    def link(self) -> str:
+        """The query with the view, for a link to the state."""
+        view = "" if self.view is None else "view=" + ",".join(f"{each:g}" for each in self.view)
+        return "&".join(filter(None, [self.query, view]))
+
+    @cached_property
+    def numbers(self) -> dict[str, Held]:
+        """The parameters that are numbers, and those in their lists, as in `angles.0`."""
+        p, found = self.params, dict[str, Held]()
+        for name, kind in p.numeric.items():
+            alone = not isinstance(kind, Several)
+            for k, (value, bounds) in enumerate(zip(kind.entries(getattr(p, name)), p.ranges(name), strict=False)):
+                label = p.label(name) if alone else _entry_label(p, name, k)
+                found[name if alone else f"{name}.{k}"] = Held(value, bounds, label, kind.step, kind.unit)
+        return found
+
     def value(self, path: str) -> Any:
         """The value at a path such as pitch, R.0.2 or solution.selected. Raises LookupError in words."""
         first, *rest = path.split(".")
@@ -67,7 +107,13 @@ class State:
         at = at[first]
         for step in rest:
             at = _within(at, step)
+        _can_be_shown(at)
         return at
+
+
+def _entry_label(p: Params, name: str, k: int) -> str:
+    kind = p.kinds[name]
+    return f"{p.label(name)} {letters(kind)[k]}" if isinstance(kind, Vector) else p.entry_label(name, k)
 
 
 def _within(at: Any, step: str) -> Any:
@@ -80,6 +126,15 @@ def _within(at: Any, step: str) -> Any:
     if isinstance(at, Sequence) and not isinstance(at, str):
         raise LookupError(f"0 to {len(at) - 1}")
     raise LookupError("nothing after the value")
+
+
+def _can_be_shown(value: Any) -> None:
+    """Raises LookupError for what is more than a number, a word or a short row of numbers."""
+    if isinstance(value, Mapping):
+        raise LookupError("one of its parts: " + ", ".join(value))
+    row = isinstance(value, Sequence) and not isinstance(value, str)
+    if row and (len(value) > LONGEST or not all(isinstance(each, int | float) for each in value)):
+        raise LookupError(f"one of its {len(value)} entries, as in .0")
 
 
 def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
@@ -97,6 +152,9 @@ def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
         raise LookupError(f"for {name}: {allowed}") from None
     except GeometryError as error:
         raise LookupError(f"for {error.argument}: {error.allowed}") from None
+    except Exception as error:
+        log.exception("%s can't solve %r", sim.slug, query[:200])
+        raise LookupError(f"a state that the sim can solve ({type(error).__name__})") from None
     return state
 
 
@@ -111,11 +169,12 @@ def _view(given: Mapping[str, str]) -> list[float] | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """How a value is shown in the text: with digits, and its unit where it is a parameter."""
+    """How a value is shown in the text: with digits, or as its box has it; and its unit where it is a parameter."""
 
     path: str
     digits: int | None
     unit: str
+    boxed: bool = False
 
     def text(self, value: Any) -> str:
         """For people."""
@@ -123,20 +182,22 @@ class Shown:
             return NOTHING
         if isinstance(value, bool):
             return "yes" if value else "no"
+        if isinstance(value, (int, float)) and self.boxed:
+            return shown_number(value) + quantity(0, self.unit, 0)[1:]
         if isinstance(value, (int, float)):
             return quantity(value, self.unit, self._digits(value))
         if isinstance(value, Sequence) and not isinstance(value, str):
             return f"({', '.join(figure(each, self._digits(each)) for each in value)})"
         return str(value)
 
-    def _digits(self, value: float) -> int:
+    def _digits(self, value: Any) -> int:
         return (0 if isinstance(value, int) else 3) if self.digits is None else self.digits
 
-    def html(self, value: Any, tag: str = "output") -> str:
+    def html(self, value: Any, tag: str = "span") -> str:
         """An element that is kept up to date."""
-        digits = "" if self.digits is None else f' data-digits="{self.digits}"'
+        digits = "data-boxed" if self.boxed else f'data-digits="{self._digits(value)}"'
         unit = f' data-unit="{escape(self.unit)}"' if self.unit else ""
-        return f'<{tag} data-value="{escape(self.path)}"{digits}{unit}>{escape(self.text(value))}</{tag}>'
+        return f'<{tag} data-value="{escape(self.path)}" {digits}{unit}>{escape(self.text(value))}</{tag}>'
 
 
 def shown(sim: AnySim, what: str) -> Shown:
@@ -145,4 +206,5 @@ def shown(sim: AnySim, what: str) -> Shown:
     if digits and not (digits.isdecimal() and int(digits) <= 9):
         raise LookupError("after the path a colon and 0 to 9 digits")
     kind = sim.params.kinds.get(path)
-    return Shown(path, int(digits) if digits else None, "" if kind is None else unit_of(kind))
+    unit = "" if kind is None else unit_of(kind)
+    return Shown(path, int(digits) if digits else None, unit, boxed=kind is not None and not digits)

@@ -145,7 +145,7 @@ async def one(slug: str, given: Given) -> dict[str, Any]:
     steps = [] if lesson is None else lesson.steps
     return {
         **_details(sim), "solution": solution_schema(solved(sim)),
-        "steps": [{"id": step.id, "title": step.title, "query": step.state.query} for step in steps],
+        "steps": [{"id": step.id, "title": step.title, "query": step.state.link} for step in steps],
     }  # fmt: skip
 
 

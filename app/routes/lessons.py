@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import segno
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import RedirectResponse, Response
 
-from app.lessons.concepts import CONCEPTS
+from app.lessons.concepts import CONCEPTS, MEANINGS
 from app.lessons.lesson import Lesson
-from app.routes import links, rendering
+from app.routes import code, links, rendering
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
 from app.routes.services import Given
@@ -17,7 +18,7 @@ router = APIRouter(include_in_schema=False)
 
 @page("/", router)
 async def launcher(request: Request, given: Given) -> Response:
-    return rendering.render(request, "launcher.html", shelf=given.lessons)
+    return rendering.render(request, "launcher.html", shelf=given.lessons, concepts=CONCEPTS)
 
 
 @page("/sims/{slug}", router)
@@ -37,19 +38,24 @@ async def own(request: Request, given: Given, name: str) -> Response:
 def _lesson(request: Request, sim: AnySim, lesson: Lesson | None) -> Response:
     """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
     items = request.query_params.multi_items()
-    links.read(sim, items)
-    query = links.own(items)
-    return rendering.render(request, "sim.html", sim=sim, lesson=lesson, query=query)
+    params, query = links.read(sim, items), links.own(items)
+    if not query and lesson is not None and lesson.steps:
+        params = lesson.steps[0].state.params
+    address = str(request.url.replace(query=""))
+    return rendering.render(
+        request, "sim.html", sim=sim, lesson=lesson, query=query, scripts=code.shown(sim, params), address=address,
+        code_of_address=segno.make(address, micro=False).svg_inline(scale=3, border=0),
+    )  # fmt: skip
 
 
 @page("/concepts", router)
 async def concepts(request: Request, given: Given) -> Response:
-    return rendering.render(request, "concepts.html", concepts=CONCEPTS, places=given.lessons.concepts())
+    return rendering.render(request, "concepts.html", concepts=CONCEPTS, meanings=MEANINGS, shelf=given.lessons)
 
 
 @page("/concepts/{slug}", router)
 async def concept(request: Request, given: Given, slug: str) -> Response:
-    place = given.lessons.concepts().get(slug)
+    place = given.lessons.concepts.get(slug)
     if place is None:
         raise HTTPException(404, f"There is no concept named {slug[:60]!r}.")
     return RedirectResponse(f"{rendering.base(request)}/sims/{place}#concept-{slug}")

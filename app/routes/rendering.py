@@ -12,6 +12,7 @@ from fastapi import HTTPException, Request
 from fastapi.responses import Response
 from starlette.templating import Jinja2Templates
 
+from app import scripts
 from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
@@ -87,6 +88,7 @@ def viewer(
         "slug": sim.slug, "title": sim.title, "watching": not key,
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
+        "code": f"{place}/code" if scripts.script(sim, "numpy") else "",
         "files": None if sim.files is None else {"largest": largest},
         "steps": steps if options.get("lesson") == "1" else [],
         "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],

@@ -44,7 +44,7 @@ class Visit:
     """It came with the room's key."""
     name: str = ""
     address: str = ""
-    """Of the page's machine, as far as proxies tell."""
+    """The page's machine, as far as proxies tell."""
     ticket: str = ""
     """What it was handed to steer the room with."""
     watching: bool = True

@@ -7,6 +7,7 @@ a name is followed from the world to its pixel.
 from __future__ import annotations
 
 from sims.camera import actions, calibration
+from sims.camera.challenges import CHALLENGES
 from sims.camera.panes import panes
 from sims.camera.params import OWN, POSE, CameraParams
 from sims.camera.readouts import ALL, MATRIX, WORKED, caption, describe, readouts
@@ -56,6 +57,7 @@ SIM = Sim(
         endings=(".yaml", ".yml", ".xml", ".json", ".txt"),
     ),
     handles={"/eye": actions.hold_eye, "/look": actions.hold_look, "principal": actions.hold_principal},
+    challenges=CHALLENGES,
     states={
         "orthographic": {"projection": "orthographic"},
         "weak perspective": {"projection": "weak", "selected": "far-post"},

@@ -8,7 +8,8 @@ import numpy as np
 
 from geometry.epipolar import epipolar_line_left, epipolar_line_right
 from sims.epipolar.actions import PRESETS
-from sims.epipolar.params import LAST, POINT, EpipolarParams, Pixel
+from sims.epipolar.eye import Eye, eyes
+from sims.epipolar.params import POINT, EpipolarParams, Pixel
 from sims.epipolar.rig import pair
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.challenge import Challenge, Progress, nearer
@@ -26,7 +27,9 @@ NO_BASELINE = Progress(0.0, "Both cameras are at one place: pull them apart firs
 def _at_infinity(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     if s.F is None:
         return NO_BASELINE
-    high = min(abs(p.left[2] - p.right[2]) / HIGHER, 1.0)
+    rig = eyes(p)
+    along = np.subtract(rig[1].center, rig[0].center)
+    high = min(abs(along[2]) / HIGHER, 1.0)
     if s.epipole_left_pixel is None and s.epipole_right_pixel is None:
         if high < 1.0:
             words = (
@@ -34,7 +37,7 @@ def _at_infinity(p: EpipolarParams, s: EpipolarSolution) -> Progress:
             )
             return Progress(0.5 + 0.49 * high, words)
         return Progress(1.0, "Both epipoles are at infinity, and no line is level")
-    both, along = pair(p.left, p.right, p.left_pan, p.right_pan, p.focal), np.subtract(p.right, p.left)
+    both = pair(*rig)
     left, right = (_off(camera.R[2] @ along / s.baseline) for camera in (both.left, both.right))
     words = f"{quantity(left, '°', 2)} to go in the left picture, {quantity(right, '°', 2)} in the right one"
     return Progress(min(0.5 * high + 0.5 * (1.0 - max(left, right) / 90.0), 0.99), words)
@@ -49,7 +52,8 @@ def _off(sine: float) -> float:
 def _both_inside(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     if s.F is None:
         return NO_BASELINE
-    left, right = (_outside(pixel) for pixel in (s.epipole_left_pixel, s.epipole_right_pixel))
+    epipoles = (s.epipole_left_pixel, s.epipole_right_pixel)
+    left, right = (_outside(pixel, eye) for pixel, eye in zip(epipoles, eyes(p), strict=True))
     fraction = 0.5 * sum(1.0 - min(each / FAR, 1.0) for each in (left, right))
     if fraction == 1.0:
         return Progress(1.0, "Both epipoles are inside their pictures")
@@ -57,11 +61,11 @@ def _both_inside(p: EpipolarParams, s: EpipolarSolution) -> Progress:
     return Progress(min(fraction, 0.99), words)
 
 
-def _outside(pixel: Pixel | None) -> float:
+def _outside(pixel: Pixel | None, eye: Eye) -> float:
     """Pixels from an epipole to its picture."""
     if pixel is None:
         return math.inf
-    return math.hypot(*(max(-at, at - last, 0.0) for at, last in zip(pixel, LAST, strict=True)))
+    return math.hypot(*(max(-at, at - last, 0.0) for at, last in zip(pixel, eye.last, strict=True)))
 
 
 def _where(outside: float) -> str:
@@ -71,7 +75,7 @@ def _where(outside: float) -> str:
 
 
 def _lines_stay(p: EpipolarParams, s: EpipolarSolution) -> Progress:
-    both = pair(p.left, p.right, p.left_pan, p.right_pan, p.focal)
+    both = pair(*eyes(p))
     began = [camera.project(POINT)[0] for camera in (both.left, both.right)]
     if both.F is None or s.pixel_left is None or s.pixel_right is None or not np.isfinite(began).all():
         return Progress(0.0, "There must be two lines: both cameras must see P, where it is now and where it began.")

@@ -42,7 +42,7 @@ class Challenge(Generic[P, S]):
     misses: Sequence[Mapping[str, Any]]
     """States that nearly reach it, and don't."""
     starts: Mapping[str, Any] | None = None
-    """The state before, for a path."""
+    """The state before, where the goal is a path."""
 
     def progress(self, params: P, solution: S, before: tuple[P, S] | None = None) -> Progress:
         """How near a state is; `before` is the one that was seen before it."""
@@ -60,7 +60,7 @@ def nearer(left: float, far: float, within: float, words: str, done: str) -> Pro
 def checked(
     challenges: Sequence[Challenge[P, S]], params: P, solution: S, before: tuple[P, S] | None = None
 ) -> dict[str, dict[str, Any]]:
-    """Each challenge: whether it is solved, how near that is, and what is said of it, as plain values for JSON."""
+    """Whether each challenge is solved, how near that is, and what is said of it: plain values for JSON."""
     found = {each.id: each.progress(params, solution, before) for each in challenges}
     return {
         name: {"solved": progress.solved, "progress": round(progress.fraction, 3), "words": progress.words}

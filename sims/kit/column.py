@@ -218,6 +218,7 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<div class="s3-toolbar">'
         '<button type="button" data-s3="share">Share link</button>'
         '<button type="button" data-s3="present">Present</button>'
+        '<button type="button" data-s3="code" title="A Python script with the numbers of now">Copy code</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
         f"{files}</div>"

@@ -41,6 +41,7 @@ class View:
         something of this one is lost. By steps too, or the view would follow whatever moves.
         """
         away = np.array([np.asarray(place, dtype=float) for place in places]).reshape(-1, 3) - self.look_at
+        away = away[(np.abs(away) < RUN_AWAY * self.radius).all(axis=1)]  # before lengths: squares may be too large
         away = away[np.linalg.norm(away, axis=1) < RUN_AWAY * self.radius]
         wide, middles = self.radius, SIDES[:1]
         while not (holds := _all_within(SPARE * wide, away, middles)).any():

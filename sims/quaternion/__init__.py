@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from sims.kit.sim import Action, Contract, Objective, Sim
 from sims.quaternion import actions, ball, dial
+from sims.quaternion.challenges import CHALLENGES
 from sims.quaternion.offers import QuaternionOffers
 from sims.quaternion.panes import panes
 from sims.quaternion.params import BALL, COMPOSED, MATRIX, ORDER, PATH, SANDWICH, QuaternionParams
@@ -53,6 +54,7 @@ SIM = Sim(
         "/tip": actions.hold_tip, "/point": actions.hold_point, "t": actions.hold_t,
         "theta": dial.hold_theta, "half": dial.hold_half, "q": ball.hold_q, "minus_q": ball.hold_minus_q,
     },
+    challenges=CHALLENGES,
     states={
         "no turn": {"angle": 0},
         "half turn": {"axis": (1, 1, 0), "angle": 180},

@@ -9,6 +9,7 @@ from __future__ import annotations
 from sims.kit.paste import Paste
 from sims.kit.sim import Contract, Objective, Sim, Typed
 from sims.transform_chain import actions, own
+from sims.transform_chain.challenges import CHALLENGES
 from sims.transform_chain.offers import ChainOffers
 from sims.transform_chain.params import MOST, OWN, POINT, ChainParams
 from sims.transform_chain.readouts import FREEDOM, INVERSE, STAGES, caption, describe, readouts
@@ -53,6 +54,7 @@ SIM = Sim(
         " what a joint changes), or a robot’s URDF whose joints make one chain, of at most eight links",
         own.EXAMPLE, own.read, own.changes, (".urdf", ".xml", ".csv", ".txt"),
     ),
+    challenges=CHALLENGES,
     states={
         "one link": {"angles": (50,), "lengths": (1.2,), "axes": "z"},
         "planar 2R": {"angles": (30, 60), "lengths": (1, 0.8), "axes": "zz"},

@@ -1,12 +1,15 @@
 // Questions: predictions, which the sim then plays, checks, and challenges, which the sim says how near one is to.
-import { spelled, valueAt } from "./values.js";
+import { valueAt } from "./spelling.js";
 
 const PLAY = 1.2; // seconds
+const REST = 700; // milliseconds without a change before how near one is is spoken
 
 export class Answers {
   constructor(sim, steps) {
     this.sim = sim;
     this.steps = steps;
+    this.live = document.querySelector("[data-live]");
+    this.speaking = 0;
   }
 
   begin() {
@@ -24,8 +27,8 @@ export class Answers {
       form.dataset.answered = right ? "right" : "wrong";
       for (const input of form.querySelectorAll("fieldset :is(input, button)")) input.disabled = true;
       form.querySelector("[data-right]")?.closest("label").classList.add("right");
-      const answer = typeof asked.answer === "number" && asked.kind !== "choice" ? ` It is ${spelled(asked.answer, {})}.` : "";
-      say(form, (right ? "You saw that coming." : "Not what you expected? See what happens.") + answer);
+      const words = right ? "You saw that coming." : "Not what you expected? See what happens.";
+      say(form, asked.said ? `${words} It is ${asked.said}.` : words);
       this.play(asked);
     });
   }
@@ -57,11 +60,22 @@ export class Answers {
   // Solved once is solved, by a learner: what the text itself shows or passes on its way is nobody's.
   challenge({ id, solved, progress, words }) {
     const box = document.querySelector(`[data-challenge="${CSS.escape(id)}"]`);
-    if (!box || box.dataset.solved || (solved && this.steps.gliding)) return;
+    if (!box || box.dataset.solved) return;
     box.querySelector("progress").value = progress;
     const near = box.querySelector(".near");
-    if (near.textContent !== words) near.textContent = words;
-    if (solved && this.steps.taken) box.dataset.solved = "1";
+    if (near.textContent === words) return;
+    near.textContent = words;
+    const title = box.querySelector("strong").textContent;
+    if (solved && this.steps.taken) {
+      box.dataset.solved = "1";
+      this.speak(`${title}: solved.`, 0);
+    } else if (box.closest(".current")) this.speak(`${title}: ${words}`, REST);
+  }
+
+  // Of the step that is read, and not while something moves.
+  speak(words, after) {
+    clearTimeout(this.speaking);
+    this.speaking = setTimeout(() => (this.live.textContent = words), after);
   }
 }
 

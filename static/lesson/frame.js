@@ -6,8 +6,9 @@ export class Frame {
     this.frame = frame;
     this.takers = {};
     this.state = null; // params, query, and the solution of the newest state that is solved
-    this.asked = 0;
+    this.asked = null; // when the question was sent that isn't answered yet
     this.stale = false;
+    this.again = 0;
     addEventListener("message", ({ source, origin, data }) => {
       if (origin === location.origin && source === frame.contentWindow) this.take(data);
     });
@@ -27,17 +28,11 @@ export class Frame {
   }
 
   take(data) {
-    switch (data?.type) {
-      case "sim3:state":
-        this.takeState(data);
-        break;
-      case "sim3:ready":
-      case "sim3:drawn":
-        this.ask();
-        break;
-      case "sim3:challenge":
-        this.tell("challenge", data);
-    }
+    const type = String(data?.type).replace("sim3:", "");
+    if (type === "state") this.takeState(data);
+    else if (type === "drawn") this.ask();
+    else if (type === "ready") this.askAnew();
+    if (["ready", "challenge", "touched", "error", "picture"].includes(type)) this.tell(type, data);
   }
 
   takeState({ params, query, solution }) {
@@ -45,21 +40,40 @@ export class Frame {
     if (solution === undefined) return;
     this.state = { params, query, solution };
     this.tell("values", this.state);
-    this.asked = 0;
+    this.asked = null;
     if (this.stale) this.ask();
   }
 
   // The newest values: one question is on its way at a time.
   ask() {
-    this.stale = performance.now() - this.asked < ANSWERED;
+    this.stale = this.asked !== null && performance.now() - this.asked < ANSWERED;
     if (this.stale) return;
     this.asked = performance.now();
+    clearTimeout(this.again); // a sim that wasn't there yet never heard the question
+    this.again = setTimeout(() => this.asked !== null && this.askAnew(), ANSWERED);
     this.post({ type: "sim3:get", solution: true });
+  }
+
+  // What was asked before the sim was ready, it never heard.
+  askAnew() {
+    this.asked = null;
+    this.ask();
   }
 
   // What a step, a link or a question names: `seconds` to glide there.
   set({ params, view }, seconds) {
     this.post({ type: "sim3:set", params, ...(seconds ? { seconds } : {}), ...(view ? { view } : {}) });
+  }
+
+  // What somebody moves or types in the text, as if they did it beside the scene.
+  move(params) {
+    this.tell("touched");
+    this.set({ params });
+  }
+
+  enter(name, text) {
+    this.tell("touched");
+    this.post({ type: "sim3:enter", name, text });
   }
 
   post(message) {

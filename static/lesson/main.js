@@ -1,13 +1,14 @@
 // A lesson: its text beside the sim.
 import { Answers } from "./answers.js";
 import { Frame } from "./frame.js";
+import { Handout } from "./handout.js";
 import { Steps } from "./steps.js";
 import { Values } from "./values.js";
 
 const data = JSON.parse(document.getElementById("lesson").textContent);
 const sim = new Frame(document.querySelector("iframe[data-slug]"));
 const steps = new Steps(sim, data.steps);
-const parts = [new Values(sim), new Answers(sim, steps)];
+const parts = [new Values(sim), new Answers(sim, steps), new Handout(data)];
 for (const part of parts) part.begin();
 steps.begin(data.query);
 sim.begin();

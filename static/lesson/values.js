@@ -1,14 +1,22 @@
 // Numbers in the text that are those of the sim: shown, and dragged, stepped with keys or typed.
+import { figure, filled, spelled, valueAt } from "./spelling.js";
+
 const DRAGGED = 4; // pixels of the pointer for one step
+const KEYS = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
 
 export class Values {
   constructor(sim) {
     this.sim = sim;
     this.held = null; // the number that is dragged
+    this.entered = null; // the one whose text the sim was told last
   }
 
   begin() {
     this.sim.on("values", (state) => this.show(state));
+    this.sim.on("error", (error) => this.refuse(error));
+    for (const node of document.querySelectorAll("[data-value]")) node.dataset.written = node.textContent;
+    addEventListener("beforeprint", () => this.showWritten());
+    addEventListener("afterprint", () => this.sim.state && this.show(this.sim.state));
     for (const input of document.querySelectorAll("[data-drag]")) this.hold(input);
     for (const node of document.querySelectorAll("[data-point]")) this.point(node);
   }
@@ -19,18 +27,40 @@ export class Values {
       if (node.textContent !== words) node.textContent = words;
     }
     for (const input of document.querySelectorAll("[data-drag]")) {
-      if (input !== this.held && !input.matches(":focus:not([data-stepped])")) put(input, state.params[input.dataset.drag]);
+      const value = valueAt(state, input.dataset.drag); // none where a list is too short for it
+      if (value !== undefined && input !== this.held && !("typing" in input.dataset)) put(input, value);
     }
     for (const link of document.querySelectorAll("[data-href]")) link.setAttribute("href", filled(link.dataset.href, state));
+  }
+
+  // On paper each number is that of its step.
+  showWritten() {
+    for (const node of document.querySelectorAll("[data-value]")) node.textContent = node.dataset.written;
+    for (const input of document.querySelectorAll("[data-drag]")) put(input, Number(input.defaultValue));
+  }
+
+  value(input) {
+    return (this.sim.state && valueAt(this.sim.state, input.dataset.drag)) ?? Number(input.ariaValueNow);
   }
 
   // ---- a number that is held
 
   hold(input) {
-    put(input, Number(input.value));
+    put(input, Number(input.ariaValueNow));
+    this.letDrag(input);
+    input.addEventListener("keydown", (event) => this.key(input, event));
+    input.addEventListener("input", () => {
+      input.dataset.typing = ""; // what the sim says doesn't overwrite it
+      fit(input);
+    });
+    input.addEventListener("change", () => this.enter(input));
+    input.addEventListener("blur", () => this.giveUp(input));
+  }
+
+  letDrag(input) {
     let from = null;
     input.addEventListener("pointerdown", (event) => {
-      from = { x: event.clientX, value: numberOf(input) };
+      from = { x: event.clientX, value: this.value(input) };
       input.setPointerCapture(event.pointerId);
     });
     input.addEventListener("pointermove", (event) => {
@@ -43,26 +73,59 @@ export class Values {
       if (from && this.held !== input) input.select();
       from = this.held = null;
     });
-    input.addEventListener("keydown", (event) => this.step(input, event));
-    input.addEventListener("input", () => delete input.dataset.stepped);
-    input.addEventListener("change", () => this.move(input, numberOf(input)));
   }
 
-  step(input, event) {
-    const by = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
-    if (by && !event.altKey && !event.ctrlKey && !event.metaKey) {
-      event.preventDefault();
-      input.dataset.stepped = "1"; // nothing is being typed that the sim's answer would overwrite
-      this.move(input, numberOf(input) + by * (event.shiftKey ? 10 : 1) * Number(input.dataset.step));
-    } else if (event.key === "Enter") this.move(input, numberOf(input));
+  key(input, event) {
+    const end = { Home: input.ariaValueMin, End: input.ariaValueMax }[event.key];
+    const typing = "typing" in input.dataset;
+    if (event.key === "Enter") this.enter(input);
+    else if (event.key === "Escape") this.giveUp(input);
+    else if (event.altKey || event.ctrlKey || event.metaKey || (typing && !/Up|Down/.test(event.key))) return;
+    else if (KEYS[event.key]) this.move(input, this.value(input) + KEYS[event.key] * (event.shiftKey ? 10 : 1) * Number(input.dataset.step));
+    else if (end !== undefined) this.move(input, Number(end));
+    else return;
+    event.preventDefault();
   }
 
+  // A hand stops at the bounds.
   move(input, wanted) {
-    const [low, high] = [Number(input.ariaValueMin), Number(input.ariaValueMax)];
-    const now = this.sim.state?.params[input.dataset.drag] ?? Number(input.ariaValueNow);
-    const value = Number.isFinite(wanted) ? Math.min(Math.max(Number(wanted.toPrecision(12)), low), high) : now;
+    const value = Math.min(Math.max(Number(wanted.toPrecision(12)), Number(input.ariaValueMin)), Number(input.ariaValueMax));
+    this.forgive(input);
+    if (value === this.value(input) && value === Number(input.ariaValueNow)) return;
     put(input, value);
-    if (value !== now) this.sim.set({ params: { [input.dataset.drag]: value } });
+    if (!this.sim.state) return;
+    const changes = changed(this.sim.state.params, input.dataset.drag, value);
+    Object.assign(this.sim.state.params, changes); // the next step goes on from here
+    this.sim.move(changes);
+  }
+
+  // What was typed means what it would mean in the sim's own box, which says what can't be taken.
+  enter(input) {
+    if (!("typing" in input.dataset)) return;
+    this.forgive(input);
+    this.entered = input;
+    this.sim.enter(input.dataset.drag, input.value);
+  }
+
+  refuse({ message, control }) {
+    const input = this.entered;
+    if (!input || control !== input.dataset.drag) return;
+    const words = input.parentElement.querySelector("[role=alert]");
+    words.textContent = message;
+    if (input !== document.activeElement) return;
+    input.dataset.typing = "";
+    input.setAttribute("aria-invalid", "true");
+  }
+
+  giveUp(input) {
+    if (input.hasAttribute("aria-invalid") || "typing" in input.dataset) put(input, this.value(input));
+    this.forgive(input);
+  }
+
+  forgive(input) {
+    delete input.dataset.typing;
+    input.removeAttribute("aria-invalid");
+    input.parentElement.querySelector("[role=alert]").textContent = "";
   }
 
   // ---- a symbol that shows what it is in the scene
@@ -78,40 +141,18 @@ export class Values {
   }
 }
 
+// What sets a number: its parameter, or the whole list that it stands in.
+function changed(params, name, value) {
+  const [list, k] = name.split(".");
+  return { [list]: k === undefined ? value : params[list].with(Number(k), value) };
+}
+
 function put(input, value) {
   input.value = figure(value, null);
   input.ariaValueNow = value;
-  input.style.width = `${input.value.length + 0.5}ch`;
+  fit(input);
 }
 
-function numberOf(input) {
-  return Number(input.value.trim().replace("−", "-").replace(",", ".").replace(/°$/, "") || NaN);
-}
-
-// The value of a path such as pitch, R.0.2 or solution.selected.
-export function valueAt({ params, solution }, path) {
-  const names = path.split(".");
-  if (names[0] === "solution") names.shift();
-  const from = path.startsWith("solution.") || !(names[0] in params) ? solution : params;
-  return names.reduce((at, name) => at?.[name], from);
-}
-
-export function figure(value, digits) {
-  const text = digits === null ? String(Number(value.toPrecision(6))) : value.toFixed(digits);
-  return (/[1-9]/.test(text) ? text : text.replace("-", "")).replace("-", "−");
-}
-
-// As app/lessons/state.py spells them.
-export function spelled(value, { digits, unit = "" }) {
-  const number = (each) => figure(each, digits === undefined ? (Number.isInteger(each) ? 0 : 3) : Number(digits));
-  if (value === null || value === undefined) return "–";
-  if (typeof value === "boolean") return value ? "yes" : "no";
-  if (Array.isArray(value)) return `(${value.map(number).join(", ")})`;
-  if (typeof value !== "number") return String(value);
-  return number(value) + (["", "°", "%"].includes(unit) ? "" : "\u2009") + unit;
-}
-
-function filled(href, state) {
-  return href.replace(/\{value:([^{}:]+)(?::(\d+))?\}/g, (_, path, digits) =>
-    [valueAt(state, path)].flat().map((each) => Number(Number(each).toPrecision(Number(digits ?? 6)))).join(","));
+function fit(input) {
+  input.style.width = `${Math.max(input.value.length, 1) + 0.5}ch`;
 }

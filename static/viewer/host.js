@@ -1,5 +1,6 @@
 // The page around the sim: what it is told, and what it asks for.
 import { embedded, sim } from "./page.js";
+import { picture as taken } from "./picture.js";
 
 export class Host {
   constructor(channel, address, highlight) {
@@ -9,6 +10,7 @@ export class Host {
     this.afterState = []; // what waits for the next state
     this.params = {};
     this.told = new Map(); // what was last said of each challenge
+    this.entered = ""; // the control that the page around typed into last
   }
 
   post(message) {
@@ -19,11 +21,18 @@ export class Host {
     if (embedded) window.parent.postMessage(message, "*");
   }
 
-  state({ params, query, solution, challenges }) {
+  state({ version, params, query, solution, challenges }) {
     this.params = params;
     this.post({ type: "sim3:state", params, query, ...(solution === undefined ? {} : { solution }) });
     this.near(challenges ?? {});
+    if (this.picturing && solution !== undefined) this.takePicture({ version, query });
     this.afterState.splice(0).forEach((then) => then());
+  }
+
+  // Somebody moved something here; a page around that leads them lets go.
+  touched() {
+    this.entered = "";
+    this.post({ type: "sim3:touched" });
   }
 
   // Of each challenge how near the state is, when that has changed.
@@ -43,13 +52,32 @@ export class Host {
   listen(view, height) {
     addEventListener("message", ({ source, data }) => {
       if (source !== window.parent || !embedded || typeof data !== "object" || data === null) return;
-      const { type, name, solution } = data;
+      const { type, name, solution, picture } = data;
       if (type === "sim3:set") this.set(data, view);
       else if (type === "sim3:action") this.channel.send({ type: "action", name });
+      else if (type === "sim3:enter") this.enter(String(name ?? ""), String(data.text ?? ""));
+      else if (type === "sim3:get" && picture) this.getPicture();
       else if (type === "sim3:get") this.get(solution);
       else if (type === "sim3:point") this.highlight.point(String(name ?? ""));
       else height.hear(data);
     });
+  }
+
+  // What was typed beside the sim means what it means in its own box.
+  enter(name, text) {
+    this.channel.send({ type: "enter", name, text });
+    this.entered = name;
+  }
+
+  // A picture of the scene as soon as it shows the newest state.
+  getPicture() {
+    this.picturing = true;
+    this.channel.send({ type: "get", solution: true });
+  }
+
+  async takePicture({ version, query }) {
+    this.picturing = false;
+    this.post({ type: "sim3:picture", query, picture: await taken(version) });
   }
 
   set({ params, seconds, theme, controls, view: wanted }, view) {

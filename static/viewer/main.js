@@ -26,7 +26,7 @@ class Page {
   constructor() {
     this.address = new Address();
     this.channel = new Channel(
-      () => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why), ({ name }) => this.goOn(name),
+      () => this.greeting(), (message) => this.take(message), (...why) => this.lost(...why), (message) => this.change(message),
     );
     this.words = new Words();
     this.trouble = new Trouble(() => this.channel.wake());
@@ -35,7 +35,7 @@ class Page {
     this.highlight = new Highlight(this.channel);
     this.controls = new Controls(this.channel, this.pace);
     this.handles = new Handles(this.pace, this.highlight);
-    this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.goOn());
+    this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.change({}));
     this.files = new Files(this.words);
     this.host = new Host(this.channel, this.address, this.highlight);
     this.height = new Height(this.host);
@@ -103,12 +103,14 @@ class Page {
   }
 
   fail({ message, errors, control }) {
-    if (!control || !this.controls.refuse(control, message)) this.words.notify("⚠ " + message);
-    this.host.post({ type: "sim3:error", message, errors });
+    const elsewhere = control && control === this.host.entered; // beside what was typed, in the page around
+    if (!elsewhere && (!control || !this.controls.refuse(control, message))) this.words.notify("⚠ " + message);
+    this.host.post({ type: "sim3:error", message, errors, ...(control ? { control } : {}) });
   }
 
-  // Somebody goes on: what was refused before is past.
-  goOn(name) {
+  // Somebody goes on, or the page around does: what was refused before is past.
+  change({ type, name }) {
+    if (type !== "set") this.host.touched();
     this.controls.forgive(name);
     this.words.dismiss();
   }

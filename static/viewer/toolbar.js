@@ -8,6 +8,7 @@ export class Toolbar {
     this.words = words;
     const does = {
       share: () => this.copy(this.address.shared, "Link copied. It opens this sim in exactly this state and view.", "Link to this state"),
+      code: () => this.copyCode(),
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
       present: () => live.present(),
@@ -19,6 +20,7 @@ export class Toolbar {
       take: () => paste.take(),
       close: (button) => button.closest("dialog").close(),
     };
+    if (!sim.code) document.querySelector("[data-s3=code]")?.remove();
     document.addEventListener("click", (event) => {
       does[event.target.closest?.("[data-s3]")?.dataset.s3]?.(event.target);
       if (event.target.closest?.("[data-act]")?.dataset.act === "reset") view.reset();
@@ -36,10 +38,21 @@ export class Toolbar {
       await navigator.clipboard.writeText(words);
       this.words.notify(done);
     } catch {
-      dialog(title, `<p><input class="s3-link" readonly aria-label="${title}" value=""></p>`);
+      const tag = words.includes("\n") ? 'textarea rows="12"' : "input";
+      dialog(title, `<p><${tag} class="s3-link" readonly aria-label="${title}">${tag === "input" ? "" : "</textarea>"}</p>`);
       const field = document.querySelector(".s3-link");
       field.value = words;
       field.select();
+    }
+  }
+
+  async copyCode() {
+    try {
+      const answer = await fetch(this.address.of(sim.code));
+      if (!answer.ok) throw new Error(answer.statusText);
+      await this.copy(await answer.text(), "Script copied. It runs with Python and NumPy, and has the numbers of now.", "Script of this state");
+    } catch {
+      this.words.notify("⚠ The script can’t be had just now. Try again.");
     }
   }
 }

@@ -140,6 +140,12 @@ export function sceneCanvas() {
   return [...scene.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
 }
 
+// The one that is painted: another, without pixels of its own, may lie over it.
+export function paintedCanvas() {
+  const pixels = (canvas) => canvas.width * canvas.height;
+  return [...scene.querySelectorAll("canvas")].filter(pixels).sort((a, b) => pixels(b) - pixels(a))[0];
+}
+
 // The scene can have the focus; people who don't see it hear what is there.
 export function describeScene(words) {
   const canvas = sceneCanvas();

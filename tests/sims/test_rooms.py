@@ -57,6 +57,15 @@ def test_everything_stands_in_its_room(sim: AnySim) -> None:
 
 
 @each_sim
+def test_what_is_taught_stands_in_its_room(sim: AnySim) -> None:
+    for challenge in sim.challenges:
+        assert room_of(challenge.near) == "challenges", challenge.id
+    scripts = {path.name for path in package(sim).glob("script_*")}
+    assert scripts in (set(), {"script_numpy.py", "script_library.py"}), "both scripts, or none"
+    assert {path.name for path in package(sim).glob("*.md")} <= {"lesson.md"}
+
+
+@each_sim
 def test_no_room_is_too_large(sim: AnySim) -> None:
     lines = {path.name: len(path.read_text().splitlines()) for path in package(sim).rglob("*.py")}
     too_large = {name: count for name, count in lines.items() if count > MOST_LINES}

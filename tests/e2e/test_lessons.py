@@ -1,0 +1,167 @@
+"""A lesson in a browser: its text moves the sim, and whoever takes over isn't overruled."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Locator, ViewportSize, expect
+
+from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner
+from tests.e2e.test_accessibility import axe
+
+DESK = ViewportSize(width=1280, height=800)
+
+
+@pytest.fixture
+def reader(classroom: Classroom) -> Learner:
+    """Somebody who reads the lesson on gimbal lock beside its sim, without viser's client."""
+    return entered(classroom, "gimbal-lock")
+
+
+def entered(classroom: Classroom, path: str) -> Learner:
+    learner = classroom.open_column("gimbal-lock/embed", size=DESK, reduced_motion="reduce")
+    learner.page.goto(f"{learner.url}/sims/{path}")
+    learner.sockets.forget()
+    learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
+    learner.until(lambda: bool(learner.sockets.states))
+    expect(learner.page.locator("html.live")).to_be_attached()
+    return learner
+
+
+def read(learner: Learner, step: str) -> None:
+    """Scroll to a step."""
+    learner.page.locator(f"#{step}").evaluate("node => node.scrollIntoView({ behavior: 'instant' })")
+
+
+def state(learner: Learner, **expected: object) -> None:
+    """Wait until the sim is in a state."""
+    learner.until(lambda: {name: learner.params[name] for name in expected} == expected)
+
+
+def number(learner: Learner, name: str) -> Locator:
+    return learner.page.locator(f"[data-drag={name}]").first
+
+
+def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: Learner) -> None:
+    page = reader.page
+    show, mine = page.get_by_role("button", name="Show this"), page.get_by_role("button", name="Back to mine")
+    read(reader, "at-the-pole")
+    state(reader, pitch=90, yaw=0)
+    expect(show).to_be_hidden()
+    reader.frame.locator("[data-slide=yaw]").press("ArrowRight")
+    state(reader, pitch=90, yaw=1)
+    expect(show).to_be_visible()
+    read(reader, "what-is-left")
+    expect(page.locator(".current")).to_have_id("what-is-left")
+    state(reader, pitch=90, yaw=1)
+    show.click()
+    state(reader, pitch=90, yaw=40, roll=40)
+    mine.click()
+    state(reader, pitch=90, yaw=1, roll=0)
+    expect(show).to_be_visible()
+    page.get_by_role("link", name="Go back to zero").click()
+    state(reader, pitch=90, yaw=0, roll=0)
+
+
+def test_a_number_in_the_text_is_moved_and_typed(reader: Learner) -> None:
+    pitch = number(reader, "pitch")
+    told = pitch.locator("xpath=..").get_by_role("alert")
+    pitch.press("ArrowUp")
+    state(reader, pitch=1)
+    pitch.fill("π/3")
+    pitch.press("Enter")
+    state(reader, pitch=60)
+    expect(pitch).to_have_value("60")
+    pitch.fill("999")
+    pitch.press("Enter")
+    expect(told).to_contain_text("999")
+    expect(pitch).to_have_value("999")
+    state(reader, pitch=60)
+    pitch.press("Escape")
+    expect(pitch).to_have_value("60")
+    expect(told).to_be_empty()
+    place = pitch.bounding_box()
+    assert place is not None
+    x, y = place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
+    mouse = reader.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 40, y, steps=5)
+    state(reader, pitch=70)
+    mouse.up()
+    expect(pitch).to_have_value("70")
+
+
+def test_questions_and_challenges_are_answered(reader: Learner) -> None:
+    page = reader.page
+    read(reader, "at-the-pole")
+    state(reader, pitch=90)
+    predict = page.locator("[data-predict]").first
+    predict.get_by_role("button").click()
+    expect(predict.get_by_role("status")).to_have_text("Choose one first.")
+    predict.get_by_label("There is one less.").check()
+    predict.get_by_role("button").click()
+    expect(predict.get_by_role("status")).to_contain_text("You saw that coming.")
+    expect(predict.locator(".why")).to_be_visible()
+
+    check = page.locator("[data-check]").first
+    check.get_by_label("About the wings").check()
+    expect(check.get_by_role("status")).to_have_text("Not this one.")
+    expect(check.locator(".reason:visible")).to_have_count(1)
+
+    box = page.locator("[data-challenge=same-orientation]")
+    page.evaluate(
+        "document.querySelector('iframe').contentWindow.postMessage({ type: 'sim3:set', params:"
+        " { pitch: 90, yaw: 40, roll: 40, show_ghost: true, ghost: [0, 90, 0] } }, location.origin)"
+    )
+    expect(box).to_have_attribute("data-solved", "1")
+    expect(page.locator("[data-live]")).to_have_text("Two settings, one orientation: solved.")
+    page.get_by_role("link", name="Go back to zero").click()
+    state(reader, yaw=0)
+    expect(box).to_have_attribute("data-solved", "1")
+
+
+def test_a_lesson_opened_in_a_state_is_not_overruled(classroom: Classroom) -> None:
+    reader = entered(classroom, "gimbal-lock?pitch=33")
+    expect(reader.page.get_by_role("button", name="Show this")).to_be_visible()
+    read(reader, "at-the-pole")
+    expect(reader.page.locator(".current")).to_have_id("at-the-pole")
+    state(reader, pitch=33)
+    reader.page.get_by_role("button", name="Show this").click()
+    state(reader, pitch=90)
+    reader.page.wait_for_url(lambda url: "pitch=90" in url)
+    reader.sockets.forget()
+    reader.page.reload()
+    reader.until(lambda: bool(reader.sockets.states))
+    state(reader, pitch=90)
+    read(reader, "what-is-left")
+    state(reader, yaw=40)
+
+
+def test_a_lesson_is_for_everybody(reader: Learner) -> None:
+    reader.page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
+    assert axe(reader.page) == []
+
+
+def test_a_frame_leads_through_the_steps(classroom: Classroom) -> None:
+    learner = classroom.open_column("gimbal-lock/embed?lesson=1", reduced_motion="reduce")
+    strip = learner.frame.locator(".s3-strip")
+    expect(strip).to_contain_text("1 of 3: Three rings, three ways to turn")
+    strip.get_by_role("button", name="Next").click()
+    state(learner, pitch=90)
+    strip.get_by_role("button", name="Next").click()
+    expect(strip).to_contain_text("Two settings, one orientation")
+    expect(strip.get_by_role("button", name="Next")).to_be_disabled()
+    assert axe(learner.page) == []
+
+
+def test_a_frame_holds_one_challenge(classroom: Classroom) -> None:
+    learner = classroom.open_column("gimbal-lock/embed?challenge=half-reach", reduced_motion="reduce")
+    strip = learner.frame.locator(".s3-strip")
+    expect(strip).to_contain_text("Half of it left")
+    learner.type("pitch", "48.59")
+    expect(strip.locator(".s3-tick")).to_have_attribute("data-solved", "")
+    expect(strip.get_by_role("status")).to_contain_text("solved")
+    learner.type("pitch", "0")
+    state(learner, pitch=0)
+    expect(strip.locator(".s3-tick")).to_have_attribute("data-solved", "")
