@@ -30,6 +30,8 @@ class Guest(Protocol):
     follows: bool
     """It lets its viewpoint be led, where somebody leads."""
     viewer: Viewer | None
+    seen: Seen | None
+    """From where it looks."""
 
     @property
     def tell(self) -> Listener:
@@ -48,8 +50,6 @@ class Audience:
         self._ticket = ""
         self._told: dict[Guest, Message] = {}
         """Everybody who is here, with what they know of their part."""
-        self._seen: dict[Guest, Seen] = {}
-        """From where those who steer look."""
         self._leader: Guest | None = None
         self._begun = False
         self._shown_at = 0.0
@@ -65,7 +65,6 @@ class Audience:
     def leave(self, guest: Guest) -> None:
         """Forget a page."""
         self._told.pop(guest, None)
-        self._seen.pop(guest, None)
         _may(guest, steer=guest.keyed)
         self._assign()
 
@@ -90,18 +89,19 @@ class Audience:
 
     def looked(self, guest: Guest, seen: Seen) -> None:
         """A page looks from somewhere else. Who steers leads by that, unless they follow somebody themselves."""
-        if guest not in self._told or not self._steers(guest):
+        before, guest.seen = guest.seen, seen
+        if guest not in self._told:
             return
-        before = self._seen.get(guest)
-        self._seen[guest] = seen
-        moves = before not in (None, seen) and not self._follows(guest)
-        if moves or self._leader in (None, guest):
+        if self._follows(guest):
+            if before is None or before.aspect != seen.aspect:
+                self.show(guest)
+        elif not guest.watching and (self._leader in (None, guest) or before not in (None, seen)):
             self._lead(guest)
 
     def follow(self, guest: Guest, on: bool) -> None:
         """A page lets its viewpoint be led, or goes its own way; who steers leads from then on."""
         guest.follows = on
-        if not on and guest in self._seen:
+        if not on and not guest.watching and guest.seen is not None:
             self._lead(guest)
         self._assign()
         if on:
@@ -109,9 +109,12 @@ class Audience:
 
     def show(self, guest: Guest) -> None:
         """Have a page look from where it is led, if it is."""
-        if guest.viewer is not None and self._leader is not None and self._follows(guest):
+        leader = self._leader
+        if guest.viewer is None or guest.seen is None or leader is None or leader.seen is None:
+            return
+        if self._follows(guest):
             with suppress(GeometryError):  # farther away than a page may look from
-                guest.viewer.follow(self._seen[self._leader])
+                guest.viewer.look_from(leader.seen.through(guest.seen.aspect))
 
     def _follows(self, guest: Guest) -> bool:
         """Those who share a room's key each have their own view, as long as nothing is handed over."""
@@ -141,10 +144,8 @@ class Audience:
         """Everybody's part anew: what they may, and what they are told of it."""
         for guest in self._told:
             _may(guest, steer=self._steers(guest))
-            if guest.watching:
-                self._seen.pop(guest, None)
-        if self._leader not in self._seen:
-            self._leader = next(iter(self._seen), None)
+        if self._leader not in (leaders := [each for each in self._told if each.seen and not each.watching]):
+            self._leader = leaders[0] if leaders else None
             self._show_soon()
         for guest in list(self._told):
             self._tell(guest)

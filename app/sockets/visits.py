@@ -20,6 +20,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from app.sockets import origins
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Answer
+from sims.kit.scene.view import Seen
 from sims.kit.sim import Sim
 from sims.kit.viewer import Viewer
 
@@ -53,6 +54,8 @@ class Visit:
     """It lets its viewpoint be led."""
     sockets: set[WebSocket] = field(default_factory=set)
     viewer: Viewer | None = None
+    seen: Seen | None = None
+    """From where it looks."""
     tell: Answer = lambda message: None
     """Says something on the channel, once there is one."""
     asking: asyncio.Task[None] | None = None

@@ -12,7 +12,6 @@ from geometry import GeometryError
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
-from sims.kit.scene.view import Seen
 from sims.kit.sim import Sim
 from sims.kit.types import Place, Vector
 from sims.kit.view import View
@@ -83,10 +82,6 @@ class Viewer:
         self.client.camera.position = viewpoint
         self.client.camera.look_at = target
         self.client.flush()
-
-    def follow(self, seen: Seen) -> None:
-        """Look from where somebody else does. Raises GeometryError."""
-        self.look_from(seen.through(self.client.camera))
 
     def highlight(self, name: str) -> None:
         """Highlight what somebody hovers over elsewhere; an empty name is nothing."""

@@ -38,10 +38,10 @@ class Seen:
     look_at: Place
     aspect: float
 
-    def through(self, camera: Any) -> list[float]:
-        """Viewpoint and looked-at place for another page: what fits into the one fits into the other."""
+    def through(self, aspect: float) -> list[float]:
+        """Viewpoint and looked-at place for a page of another shape: what fits into the one fits into the other."""
         away = np.subtract(self.position, self.look_at)
-        away *= math.sin(math.atan(_half(self.aspect))) / math.sin(math.atan(_half(_aspect(camera))))
+        away *= math.sin(math.atan(_half(self.aspect))) / math.sin(math.atan(_half(aspect)))
         return [*map(float, np.asarray(self.look_at) + away), *self.look_at]
 
 
