@@ -38,6 +38,7 @@ from app.sockets.commands import Commands
 from app.sockets.viser_messages import decoder
 from sims.kit.fields import Numbers, Slider
 from sims.kit.params import Params
+from sims.kit.scene.view import FIELD
 from sims.kit.sim import Sim
 from sims.kit.spelling import spell
 from sims.kit.viewer import Viewer
@@ -432,7 +433,7 @@ def camera_message(position: tuple[float, float, float] = (3.0, -3.0, 2.0)) -> d
         "type": "ViewerCameraMessage",
         "wxyz": (1.0, 0.0, 0.0, 0.0),
         "position": position,
-        "fov": 0.9,
+        "fov": FIELD,
         "near": 0.01,
         "far": 1000.0,
         "image_height": 600,

@@ -17,6 +17,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from app import metrics
+from app.rooms.audience import Audience
 from app.rooms.drawing import Drawing
 from app.rooms.highlight import Highlight
 from app.rooms.looking_up import LookingUp
@@ -63,6 +64,7 @@ class Session:
         self._told: tuple[tuple[Params, Any], ...] = ()
         """The last two states that were told, with their solutions."""
         self.telling = Telling(self.state)
+        self.audience = Audience()
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
         self.drawing = Drawing(
             sim, params, self.given, solver, turn, self.telling, lambda: (self.params, self.version), self._not_solved
@@ -368,6 +370,7 @@ class Session:
         self._solver.memory.free(self.drawing)
         self.motion.stop()
         self.telling.end()
+        self.audience.end()
         working = self._tasks()
         for task in working:
             task.cancel()

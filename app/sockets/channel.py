@@ -17,10 +17,12 @@ from app.sockets.channel_messages import (
     Act,
     Cancel,
     Enter,
+    Follow,
     Get,
     Handle,
     Hello,
     Hover,
+    Lend,
     Select,
     Set,
     Slide,
@@ -38,7 +40,7 @@ from sims.kit.sim import Sim
 
 GREETED_WITHIN = 10.0
 """Seconds until a page has said what it looks like."""
-FOR_ONESELF = (Get, View)
+FOR_ONESELF = (Follow, Get, Hover, View)
 """Messages that change nothing for others; who only watches may send these."""
 
 
@@ -54,9 +56,11 @@ class Conversation:
             Slide: lambda slide: self._commands.slide(slide.name, slide.value),
             Enter: lambda enter: self._commands.enter(enter.name, enter.text),
             Cancel: lambda _: self._commands.attempt(session.cancel),
+            Follow: lambda follow: session.audience.follow(visit, follow.on),
             Get: self._get,
             Handle: lambda handle: self._commands.hold(handle.name, (handle.x, handle.y)),
             Hover: self._hover,
+            Lend: lambda lend: (session.audience.hand_over if lend.on else session.audience.take_back)(),
             Select: lambda select: self._commands.select(select.name),
             Set: lambda given: self._commands.set(given.params, given.seconds),
             View: self._view,
@@ -64,7 +68,9 @@ class Conversation:
 
     def may(self, message: Any) -> bool:
         """Whether the page may say that: a second greeting means nothing, and who only watches changes nothing."""
-        return not self._visit.watching or isinstance(message, (*FOR_ONESELF, Hover))
+        if isinstance(message, Lend):
+            return self._visit.keyed
+        return not self._visit.watching or isinstance(message, FOR_ONESELF)
 
     def hear(self, message: Any) -> None:
         """Do what a message says."""
@@ -128,6 +134,7 @@ class ChannelSockets:
             inbox = Inbox(ws, "text", decoder, self._refusals, "channel")
             session = await self._greet(inbox, visit)
             session.listen(tell)
+            session.audience.enter(visit)
             tell({**session.state(), "room": visit.room, "watching": visit.watching})
             conversation = Conversation(session, visit)
             while True:
@@ -142,6 +149,8 @@ class ChannelSockets:
             await asyncio.gather(sending, return_exceptions=True)
             if session is not None:
                 session.leave(listener=tell)
+                if visit.tell is tell:  # no newer channel of the page
+                    session.audience.leave(visit)
             if visit.asking is not None:
                 visit.asking.cancel()
 
@@ -157,7 +166,8 @@ class ChannelSockets:
         if reading.cancelled() or reading.exception() or not isinstance(hello := reading.result().message, Hello):
             self._refusals["no greeting"] += 1
             raise Ended(1008)
-        session = self._open(visit, *(("", "") if visit.watching else (hello.query, hello.opened)))
+        visit.ticket, visit.follows = hello.ticket, hello.follows
+        session = self._open(visit, *((hello.query, hello.opened) if visit.keyed else ("", "")))
         session.motion.reduced = session.motion.reduced or hello.reduced
         if not visit.hello.done():
             visit.hello.set_result(hello)
@@ -165,7 +175,7 @@ class ChannelSockets:
 
     def _open(self, visit: Visit, held: str, opened: str) -> Session:
         """The session of a state that a page holds; of the sim's first one, if that state can't be solved."""
-        sim, room, watching = visit.sim, visit.room, visit.watching
+        sim, room, watching = visit.sim, visit.room, not visit.keyed
         try:
             return self._sessions.open(
                 sim, room, _state(sim, held), opened=_state(sim, opened), watching=watching, address=visit.address

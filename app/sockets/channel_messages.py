@@ -17,6 +17,10 @@ class Hello(msgspec.Struct, tag="hello", tag_field="type", forbid_unknown_fields
     query: Annotated[str, msgspec.Meta(max_length=4000)]
     opened: Annotated[str, msgspec.Meta(max_length=4000)] = ""
     """The query that the page was opened with, to which a reset returns."""
+    ticket: Annotated[str, msgspec.Meta(max_length=60)] = ""
+    """What the page was handed to steer with; from a page with the key, what it has handed over."""
+    follows: bool = True
+    """It lets its viewpoint be led."""
 
 
 class Handle(msgspec.Struct, tag="handle", tag_field="type", forbid_unknown_fields=True):
@@ -77,10 +81,24 @@ class View(msgspec.Struct, tag="view", tag_field="type", forbid_unknown_fields=T
     view: Annotated[list[Number], msgspec.Meta(min_length=6, max_length=6)]
 
 
+class Follow(msgspec.Struct, tag="follow", tag_field="type", forbid_unknown_fields=True):
+    """The page lets its viewpoint be led, or goes its own way."""
+
+    on: bool
+
+
+class Lend(msgspec.Struct, tag="lend", tag_field="type", forbid_unknown_fields=True):
+    """Hands the room over by a new ticket, or takes it back."""
+
+    on: bool
+
+
 class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=True):
     """Asks for the state, and for its solution too."""
 
     solution: bool = False
 
 
-decoder = msgspec.json.Decoder(Hello | Slide | Enter | Handle | Set | Act | Hover | Select | Cancel | Get | View)
+decoder = msgspec.json.Decoder(
+    Hello | Slide | Enter | Handle | Set | Act | Hover | Select | Cancel | Follow | Lend | Get | View
+)

@@ -15,11 +15,13 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
+from app.rooms.session import Session
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Commands
 from app.sockets.inbox import Ended, Inbox, Read, Strangers
-from app.sockets.viser_messages import decoder
+from app.sockets.viser_messages import ViewerCameraMessage, decoder
 from app.sockets.visits import Visit, Visits, close
+from sims.kit.scene.view import FIELD, Seen
 from sims.kit.sim import Sim
 from sims.kit.viewer import Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
@@ -109,6 +111,8 @@ class SceneSockets:
         else:
             if (session := self._sessions.find(link.visit.sim, link.visit.room)) is not None:
                 session.touch()
+                if isinstance(message, ViewerCameraMessage):
+                    _lead(session, link.visit, message)
             wire.feed(read.data, message.value_of)
 
     async def _on_connect(self, client: viser.ClientHandle) -> None:
@@ -135,9 +139,17 @@ class SceneSockets:
         visit = link.visit
         hello = visit.hello.result() if visit.hello.done() else SILENT
         # A page whose first message is late may still bring its state.
-        silent = visit.watching or not visit.hello.done()
+        silent = not visit.keyed or not visit.hello.done()
         session = self._sessions.open(visit.sim, visit.room, visit.sim.params(), watching=silent, address=visit.address)
         commands = Commands(session, lambda message: visit.tell(message))
         link.viewer = visit.viewer = Viewer(visit.sim, client, commands, dark=hello.dark, watching=visit.watching)
         session.join(link.viewer)
+        session.audience.show(visit)
         link.seen()
+
+
+def _lead(session: Session, visit: Visit, camera: ViewerCameraMessage) -> None:
+    """Let others see from there. Who looks through a camera of the sim does so by its state, which all have."""
+    if abs(camera.fov - FIELD) < 1e-3:
+        aspect = (camera.image_width or 1) / (camera.image_height or 1)
+        session.audience.looked(visit, Seen(camera.position, camera.look_at, aspect))

@@ -20,6 +20,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from app.sockets import origins
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Answer
+from sims.kit.scene.view import Seen
 from sims.kit.sim import Sim
 from sims.kit.viewer import Viewer
 
@@ -34,18 +35,27 @@ MOST_WARNINGS = 100
 """Different refusals that the log tells of."""
 
 
-@dataclass
+@dataclass(eq=False)
 class Visit:
     """One page looking at one room, by its two websockets; they share what the channel said first."""
 
     sim: Sim[Any, Any]
     room: str
-    watching: bool
+    keyed: bool
+    """It came with the room's key."""
     name: str = ""
     address: str = ""
     """The page's machine, as far as proxies tell."""
+    ticket: str = ""
+    """What it was handed to steer the room with."""
+    watching: bool = True
+    """It may only watch."""
+    follows: bool = True
+    """It lets its viewpoint be led."""
     sockets: set[WebSocket] = field(default_factory=set)
     viewer: Viewer | None = None
+    seen: Seen | None = None
+    """From where it looks."""
     tell: Answer = lambda message: None
     """Says something on the channel, once there is one."""
     asking: asyncio.Task[None] | None = None
@@ -71,7 +81,9 @@ class Visits:
         """The visit that a socket belongs to; the first of its two sockets begins it, the last one ends it."""
         name = ws.query_params.get("viewer", "")
         name = f"{sim.slug}/{room}/{watching}/{name}" if re.fullmatch(r"[a-z0-9]{8,40}", name) else ""
-        visit = self._open.get(name) or Visit(sim, room, watching, name, ws.client.host if ws.client else "")
+        visit = self._open.get(name) or Visit(
+            sim, room, not watching, name, ws.client.host if ws.client else "", watching=watching
+        )
         self._open[name or str(id(visit))] = visit
         visit.sockets.add(ws)
         try:

@@ -217,6 +217,7 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
     return (
         '<div class="s3-toolbar">'
         '<button type="button" data-s3="share">Share</button>'
+        '<button type="button" data-s3="present">Present</button>'
         '<button type="button" data-s3="code" title="A Python script with the numbers of now">Copy code</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="take-home">Take it home</button>'

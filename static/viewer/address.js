@@ -10,11 +10,15 @@ export class Address {
     for (const [name, value] of new Query(sim.search)) if (OPTIONS.includes(name)) this.options.append(name, value);
     this.opened = stateQuery(sim.opened);
     this.query = stateQuery(sim.search);
+    const brought = new Query(location.hash.slice(1));
+    this.ticket = brought.get("steer") ?? history.state?.ticket ?? "";
+    this.left = brought.get("room") ?? history.state?.left ?? ""; // the room of which this is a copy
   }
 
   show() {
     try {
-      history.replaceState({ path: sim.path, opened: this.opened }, "", this.of(sim.address));
+      const { ticket, left } = this;
+      history.replaceState({ path: sim.path, opened: this.opened, ticket, left }, "", this.of(sim.address));
     } catch { /* some browsers let a sandboxed frame change no more than its query */ }
   }
 
@@ -22,6 +26,11 @@ export class Address {
   of(path) {
     const search = [this.query, this.options.toString().replaceAll("%2C", ",")].filter(Boolean).join("&");
     return path + (search ? "?" + search : "");
+  }
+
+  // Where others watch this room, or another one.
+  watched(room) {
+    return new URL(sim.path.replace(/\/s\/([0-9a-f]{20})\/.*$/, (_, here) => `/s/${room ?? here}/`), location.href).href;
   }
 
   // A link to a page of the sim in this state; to its embed, in a room of its own.

@@ -19,7 +19,7 @@
     root.dataset.theme = dark ? "dark" : "light";
 
     window.sim3 = {
-      ...data, dark, place, path,
+      ...data, dark, place, path, keyed: !data.watching,
       viewer: Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join(""),
       socket: place.replace(/^http/, "ws"), search: location.search, opened: history.state?.opened ?? location.search,
     };

@@ -1,4 +1,5 @@
 // The controls: what is moved, typed and chosen goes to the server; what it answers is shown.
+import { lock } from "./lock.js";
 import { stepped, text } from "./numbers.js";
 import { column, sim } from "./page.js";
 
@@ -161,7 +162,7 @@ export class Controls {
       for (const input of inputs("switch", name)) input.checked = value;
       for (const input of inputs("choice", name)) choose(input, value);
     }
-    if (sim.watching) lock();
+    lock();
   }
 
   fill(box, shown) {
@@ -227,11 +228,6 @@ function tellValue(input, value) {
 function choose(input, value) {
   if (input.type === "radio") input.checked = input.value === String(value ?? "");
   else if (input.value !== String(value ?? "")) input.value = String(value ?? "");
-}
-
-// Who only watches sees everything and sets nothing.
-function lock() {
-  for (const node of column.querySelectorAll(".s3-controls :is(input, select, textarea, [data-act], [data-nudge], [data-s3=take])")) node.disabled = true;
 }
 
 function toggle(ask) {

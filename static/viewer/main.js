@@ -7,6 +7,7 @@ import { Handles } from "./handles.js";
 import { Height } from "./height.js";
 import { Highlight } from "./highlight.js";
 import { Host } from "./host.js";
+import { Live } from "./live.js";
 import { Pace } from "./pace.js";
 import { sim } from "./page.js";
 import { Parts } from "./parts.js";
@@ -40,7 +41,8 @@ class Page {
     this.height = new Height(this.host);
     this.view = new View(this.channel, this.address, () => this.height.tellSoon());
     this.paste = new Paste(this.words);
-    this.toolbar = new Toolbar(this.address, this.words, this.files, this.view, this.paste);
+    this.live = new Live(this.channel, this.address, this.view);
+    this.toolbar = new Toolbar(this.address, this.words, this.files, this.view, this.paste, this.live);
     this.strip = new Strip(this.channel, this.view, this.address);
     this.state = null;
     this.sceneless = false;
@@ -48,6 +50,7 @@ class Page {
       state: (message) => this.takeState(message),
       show: (message) => this.takeParts(message),
       home: (message) => this.view.found(message),
+      room: (message) => this.live.hear(message),
       point: ({ name }) => this.highlight.others(name),
       error: (message) => this.fail(message),
       work: (message) => this.work.show(message),
@@ -66,7 +69,8 @@ class Page {
   }
 
   greeting() {
-    return { query: this.address.query, opened: this.address.opened };
+    const { query, opened, ticket } = this.address;
+    return { query, opened, ticket, follows: !this.live.alone };
   }
 
   lost(code, reason) {

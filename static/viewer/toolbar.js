@@ -4,7 +4,7 @@ import { TakeHome } from "./take_home.js";
 import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
-  constructor(address, words, files, view, paste) {
+  constructor(address, words, files, view, paste, live) {
     this.address = address;
     this.words = words;
     this.takeHome = new TakeHome(address, dialog);
@@ -14,10 +14,11 @@ export class Toolbar {
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
       picture: savePicture,
       "take-home": () => this.takeHome.open(),
+      present: () => live.present(),
       keys: showKeys,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
       enlarge: (button) => enlarge(button.closest("figure")),
-      home: () => view.goHome(),
+      home: () => view.look("home"),
       "give-up": () => files.giveUp(),
       take: () => paste.take(),
       close: (button) => button.closest("dialog").close(),
@@ -89,11 +90,12 @@ function download(href, name) {
   link.remove();
 }
 
-function dialog(title, html) {
+export function dialog(title, html) {
   document.querySelector("dialog.s3-dialog")?.remove();
   const box = element("dialog", { class: "s3-dialog", "aria-label": title });
   box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close">Close</button>`;
   box.showModal();
+  return box;
 }
 
 function showKeys() {

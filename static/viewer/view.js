@@ -6,6 +6,8 @@ import { sceneCanvas } from "./viser_dom.js";
 const REST = 150; // milliseconds without another size
 const KEPT = 400; // milliseconds between two addresses: Safari allows a hundred in 30 s
 const SEEN = 2500; // milliseconds for which a hint stands there
+const STILL = 4; // pixels that a hand moves in a click
+const TURNS = /^(Arrow\w+|[wasdqe])$/i; // viser's own keys
 const KEYS = { 1: "front", 2: "side", 3: "top", "+": "in", "=": "in", "-": "out", Home: "home" };
 const FROM = { front: [0, -1, 0], side: [1, 0, 0], top: [0, -1e-3, 1] };
 
@@ -28,6 +30,9 @@ export class View {
     this.camera = this.linked ?? this.home;
     this.sizing = this.keeping = this.hinting = 0;
     this.hands = new Set(); // pointers that are down
+    this.from = null; // where the last one came down on the scene
+    this.led = false; // whether it follows somebody else's
+    this.freed = () => {}; // hears that a hand took it from there
     this.waiting = false; // whether the camera goes home when they are up
     addEventListener("pointerdown", (event) => this.hands.add(event.pointerId), true);
     for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, (event) => this.lift(event), true);
@@ -35,6 +40,8 @@ export class View {
     scene.addEventListener("click", (event) => this.look(event.target.closest?.("[data-look]")?.dataset.look));
     scene.addEventListener("pointerdown", (event) => this.press(event), { capture: true, passive: true });
     scene.addEventListener("keydown", (event) => this.key(event));
+    scene.addEventListener("wheel", ({ target }) => target === sceneCanvas() && this.letGo(), { passive: true });
+    addEventListener("pointermove", (event) => this.pull(event));
     if (embedded) this.share();
     addEventListener("resize", () => {
       clearTimeout(this.sizing);
@@ -87,14 +94,29 @@ export class View {
   }
 
   press(event) {
-    if (!event.target.matches?.("canvas")) return;
+    const inside = event.target.matches?.("canvas");
+    this.from = inside ? [event.clientX, event.clientY] : null;
+    if (!inside) return;
     if (event.pointerType !== "touch") delete scene.dataset.shared;
     else addEventListener("pointerup", () => delete scene.dataset.shared, { once: true });
     sceneCanvas()?.focus({ preventScroll: true });
   }
 
+  // A hand that moves the scene leads its view; a mere click doesn't.
+  pull({ pointerId, clientX, clientY }) {
+    if (this.led && this.hands.has(pointerId) && this.from && Math.hypot(clientX - this.from[0], clientY - this.from[1]) > STILL) this.letGo();
+  }
+
+  letGo() {
+    if (!this.led) return;
+    this.led = false;
+    this.freed();
+  }
+
   key(event) {
-    if (event.target !== sceneCanvas() || event.ctrlKey || event.metaKey || event.altKey || !KEYS[event.key]) return;
+    if (event.target !== sceneCanvas() || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (TURNS.test(event.key)) this.letGo();
+    if (!KEYS[event.key]) return;
     event.preventDefault();
     this.look(KEYS[event.key]);
   }
@@ -103,6 +125,7 @@ export class View {
 
   look(how) {
     if (!how) return;
+    this.letGo();
     if (how === "home") {
       this.goHome();
       return;
@@ -127,6 +150,7 @@ export class View {
 
   // Back to where the link that was opened looked from.
   reset() {
+    this.letGo();
     if (this.linked) this.go(this.linked);
     else this.goHome();
   }
@@ -152,7 +176,7 @@ export class View {
   follow() {
     if (!this.waiting || this.hands.size) return;
     this.waiting = false;
-    if (!this.athome) this.goHome();
+    if (!this.athome && !this.led) this.goHome();
   }
 
   get athome() {
@@ -172,7 +196,7 @@ export class View {
     const before = this.home;
     const chosen = !this.athome;
     this.home = fit();
-    if (chosen || Math.hypot(...this.home.map((v, i) => v - before[i])) < 0.02 * sim.radius) return;
+    if (this.led || chosen || Math.hypot(...this.home.map((v, i) => v - before[i])) < 0.02 * sim.radius) return;
     this.go(this.home);
   }
 

@@ -30,23 +30,43 @@ class Window:
     near: float = NEAR
 
 
+@dataclass(frozen=True)
+class Seen:
+    """From where somebody looks at the scene, through a page of some width over height."""
+
+    position: Place
+    look_at: Place
+    aspect: float
+
+    def through(self, aspect: float) -> list[float]:
+        """Viewpoint and looked-at place for a page of another shape: what fits into the one fits into the other."""
+        away = np.subtract(self.position, self.look_at)
+        away *= math.sin(math.atan(_half(self.aspect))) / math.sin(math.atan(_half(aspect)))
+        return [*map(float, np.asarray(self.look_at) + away), *self.look_at]
+
+
+def _aspect(camera: Any) -> float:
+    return float((camera.image_width or 1) / (camera.image_height or 1))  # a frame that is hidden again has none
+
+
+def _half(aspect: float) -> float:
+    """What is in sight at one metre, from the middle to the nearer edge; static/viewer/view.js does the same."""
+    return math.tan(0.5 * FIELD) * min(1.0, aspect)
+
+
 def look(camera: Any, position: Vector, look_at: Vector, radius: float) -> None:
     """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
-    height = camera.image_height or 1  # a frame that is hidden again has none
-    aspect = (camera.image_width or 1) / height
-    half = math.tan(0.5 * FIELD) * min(1.0, aspect)  # static/viewer/view.js does the same for the first view
     away = np.subtract(position, look_at)
-    away *= radius / math.sin(math.atan(half)) / float(np.linalg.norm(away))
+    away *= radius / math.sin(math.atan(_half(_aspect(camera)))) / float(np.linalg.norm(away))
     camera.position = np.asarray(look_at) + away
     camera.look_at = np.asarray(look_at)
 
 
 def look_through(camera: Any, window: Window) -> None:
     """Look from a place at another, upright as said, with a whole window in sight."""
-    aspect = (camera.image_width or 1) / (camera.image_height or 1)
     across, down = window.half
     camera.position, camera.look_at, camera.up_direction = map(np.array, (window.position, window.look_at, window.up))
-    camera.fov = 2.0 * math.atan(SPARE * max(down, across / aspect))
+    camera.fov = 2.0 * math.atan(SPARE * max(down, across / _aspect(camera)))
     camera.near = window.near
 
 
