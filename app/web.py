@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -12,22 +13,24 @@ from starlette.exceptions import HTTPException
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.routing import Route, WebSocketRoute
 
+from app.classes.registry import Classes
 from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
 from app.rooms.places import Fairness
 from app.rooms.registry import Sessions
-from app.routes import api, files, lessons, links, pages, rendering, sockets, text, watching
-from app.routes.answers import Answers, Busy, Gone
+from app.routes import api, classes, files, lessons, links, pages, rendering, sockets, text, watching
+from app.routes.answers import Answers, Busy, Gone, solved
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
 from app.security import Headers, SmallBodies
 from app.settings import ROOT, Settings
 from app.sockets.bridge import Bridge
+from app.sockets.classes import ClassSockets
 from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router, watching.router)
+ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router, watching.router, classes.router)
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
@@ -39,6 +42,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         services.sessions.begin_sweeping()
         yield
         await services.sessions.close()
+        services.classes.close()
         services.answers.close()
 
     app = FastAPI(
@@ -70,7 +74,12 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     bridge = Bridge(host, sessions, settings.origins)
     sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
-    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest)
+    answers = Answers()
+    running = Classes(partial(solved, sessions, answers), settings.class_hours, lambda: sessions.draining)
+    of_classes = ClassSockets(
+        running, bridge.visits, bridge.refusals, bridge.strangers, partial(classes.subject_of, shelf)
+    )
+    return Services(sessions, bridge, shelf, answers, Coming(files.AT_ONCE * largest), running, of_classes, largest)
 
 
 async def _bad_params(request: Request, error: Exception) -> Response:
