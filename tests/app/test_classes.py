@@ -310,7 +310,7 @@ def test_a_teacher_opens_a_class_by_a_form(http: httpx.Client) -> None:
 
 
 def test_the_state_of_another_sim_is_left_out(http: httpx.Client) -> None:
-    said = {"page": "sims/camera", "begun": f"sims/{SLUG}", "state": "yaw=45"}
+    said = {"page": "sims/gimbal-lock", "begun": f"sims/{SLUG}", "state": "yaw=45"}
     assert "yaw" not in http.post("/class", data=said).headers["location"]
 
 
