@@ -90,7 +90,7 @@ class Class:
             learner = self.learners[name] = Learner(animal(taken, wanted))
         learner.tell = tell
         tell({
-            "type": "class", "page": self.subject.page, "query": self.subject.query, "animal": learner.animal,
+            "type": "class", "address": self.subject.address, "animal": learner.animal,
             "eyes": self.eyes, "params": self.shown,
         })  # fmt: skip
         self._changed()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import parse_qsl, urlencode
 
 from sims.kit.sim import Sim
 
@@ -19,3 +20,10 @@ class Subject:
     """The state, with the page's options."""
     challenge: str = ""
     """The id of a challenge; empty: all that the sim has."""
+
+    @property
+    def address(self) -> str:
+        """What a frame loads, below the path prefix. A lesson asks its challenges itself, and begins at its first step."""
+        given = parse_qsl(self.query, keep_blank_values=True)
+        kept = [(name, text) for name, text in given if name != "challenge" or self.page.endswith("/embed")]
+        return self.page + ("?" + urlencode(kept, safe=",-.:") if kept else "")

@@ -111,7 +111,7 @@ async def teach(request: Request, given: Given, code: str, key: str) -> Response
     link = f"{request.base_url}class/{code}"
     data = {
         **_data(request, code), "socket": f"{rendering.base(request)}/class/{code}/{key}/socket",
-        "page": subject.page, "query": subject.query, "link": link,
+        "page": subject.page, "query": subject.query, "address": subject.address, "link": link,
     }  # fmt: skip
     return _page(request, "class_teacher.html", data, title=_title(given, subject), challenge=_goal(subject), code=code,
                  link=link, qr=segno.make(link, error="m").svg_inline(scale=8, omitsize=True, dark="#000", light="#fff"))  # fmt: skip

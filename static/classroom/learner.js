@@ -4,6 +4,7 @@ import { data, Stage } from "./stage.js";
 
 const GLIDE = 0.8; // seconds to the teacher's state
 const OFTEN = 1000; // milliseconds between two reports of where the sim is
+const RETURNS = 5000; // milliseconds
 const WAITING = { 1013: "The class is full. This page tries again by itself.", 4404: "Waiting for your teacher’s page …" };
 
 class Learner {
@@ -12,7 +13,7 @@ class Learner {
     this.animal = history.state?.animal ?? "";
     this.mine = null; // the learner's own state, as the sim told it last
     this.teachers = null; // the teacher's, while all eyes are there
-    this.returning = false; // back to one's own, and not there yet
+    this.returning = 0; // until then the sim may be on its way back to the learner's own state
     this.guesses = new Map();
     this.reporting = 0;
     this.reported = "";
@@ -45,18 +46,18 @@ class Learner {
 
   // ---- what the class says
 
-  enter({ page, query, animal, eyes, params }) {
+  enter({ address, animal, eyes, params }) {
     this.animal = animal;
     history.replaceState({ ...history.state, me: this.me, animal }, "");
     document.querySelector(".me").textContent = `You are ${animal}`;
-    this.stage ??= this.open(page, query);
+    this.stage ??= this.open(address);
     for (const [box, value] of this.guesses) this.socket.send({ type: "guess", box, value });
     this.reported = "";
     if (this.mine) this.report();
     this.look({ on: eyes, params });
   }
 
-  open(page, query) {
+  open(address) {
     const frame = document.querySelector(".frame");
     const stage = new Stage(Object.assign(document.createElement("iframe"), { allow: "fullscreen; clipboard-write", title: "Your sim" }), {
       "sim3:ready": () => this.teachers && this.show(),
@@ -64,7 +65,7 @@ class Learner {
       "sim3:prediction": ({ box, value }) => this.guess(box, value),
     });
     frame.append(stage.frame);
-    stage.load(page, query);
+    stage.load(address);
     return stage;
   }
 
@@ -75,7 +76,7 @@ class Learner {
     document.body.classList.toggle("eyes", on);
     if (on) this.show();
     else if (before && this.mine) {
-      this.returning = true;
+      this.returning = performance.now() + RETURNS;
       this.stage.set(this.mine.params);
     }
     this.say(on ? "All eyes on your teacher’s sim. Your own comes back." : "");
@@ -90,8 +91,8 @@ class Learner {
   // What it passes on its way to the teacher's state and back is not the learner's.
   take({ params, query }) {
     if (this.teachers) return;
-    if (this.returning && query !== this.mine.query) return;
-    this.returning = false;
+    if (performance.now() < this.returning && query !== this.mine.query) return;
+    this.returning = 0;
     this.mine = { params, query };
     this.reporting ||= setTimeout(() => this.report(), this.reported ? OFTEN : 0);
   }

@@ -10,8 +10,8 @@ export class Stage {
     });
   }
 
-  load(page, query) {
-    this.frame.src = `${data.base}/${page}${query && "?"}${query}`;
+  load(address) {
+    this.frame.src = `${data.base}/${address}`;
   }
 
   set(params, seconds) {

@@ -30,7 +30,7 @@ class Teacher {
 
   begin() {
     history.replaceState({ teacher: location.href }, "", data.place); // the key is not for who sees the address bar
-    this.stage.load(data.page, data.query);
+    this.stage.load(data.address);
     document.addEventListener("click", ({ target }) => this.press(target.closest("[data-do]")));
     this.socket.open();
   }
@@ -88,6 +88,7 @@ class Teacher {
       mine: () => this.goBack(),
       qr: () => document.querySelector(".large").showModal(),
       copy: () => copyLink(),
+      only: () => (button.ariaPressed = String(document.body.classList.toggle("only-class"))),
       end: () => document.querySelector(".sure").showModal(),
       ended: () => this.socket.send({ type: "end" }),
       close: () => button.closest("dialog").close(),

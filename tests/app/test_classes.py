@@ -107,7 +107,7 @@ def test_a_class_of_forty(local: Local, teacher: Teacher) -> None:
     with ExitStack() as stack:
         learners = [stack.enter_context(Learner(local, teacher.code)) for _ in range(40)]
         assert len({each.animal for each in learners}) == 40
-        assert {(each.welcome["page"], each.welcome["query"]) for each in learners} == {(ALONE, "yaw=45")}
+        assert {each.welcome["address"] for each in learners} == {f"{ALONE}?yaw=45"}
         for k, each in enumerate(learners):
             each.at(yaw=k)
             each.tell({"type": "guess", "box": 0, "value": k % 4})
