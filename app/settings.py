@@ -31,6 +31,7 @@ class Settings(BaseSettings):
     max_sessions_per_address: int = Field(200, ge=1, le=100_000, description="of these, from one network address")
     max_openings: int = Field(180, ge=1, le=100_000, description="sessions that one address may open within a minute")
     idle_minutes: float = Field(120, gt=0, description="minutes without input after which a session is put away")
+    class_hours: float = Field(3, gt=0, le=24, description="hours after which a class ends by itself")
     drain_seconds: float = Field(
         0, ge=0, le=8, description="seconds between SIGTERM, from which /readyz says 503, and the end"
     )

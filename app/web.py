@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -12,6 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.routing import Route, WebSocketRoute
 
+from app.classes.registry import Classes
 from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
 from app.rooms.places import Fairness
@@ -19,6 +21,7 @@ from app.rooms.registry import Sessions
 from app.routes import (
     about,
     api,
+    classes,
     code,
     developers,
     files,
@@ -33,12 +36,13 @@ from app.routes import (
     text,
     watching,
 )
-from app.routes.answers import Answers, Busy, Gone
+from app.routes.answers import Answers, Busy, Gone, solved
 from app.routes.coming import Coming, Refusal
 from app.routes.services import Services
 from app.security import Headers, SmallBodies
 from app.settings import ROOT, Settings
 from app.sockets.bridge import Bridge
+from app.sockets.classes import ClassSockets
 from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
@@ -46,7 +50,7 @@ from sims.kit.viser_internals import ViserHost
 ROUTERS = (
     pages.router, lessons.router, code.router, text.router, sharing.router, oembed.router, developers.router,
     about.router, api.router, sockets.router, files.router,
-    home.router, watching.router,
+    home.router, watching.router, classes.router,
 )  # fmt: skip
 
 
@@ -59,6 +63,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         services.sessions.begin_sweeping()
         yield
         await services.sessions.close()
+        services.classes.close()
         services.answers.close()
 
     app = FastAPI(
@@ -92,7 +97,12 @@ def _services(settings: Settings, host: ViserHost) -> Services:
     bridge = Bridge(host, sessions, settings.origins)
     sessions.put_away = lambda session: bridge.visits.put_away(session.sim, session.room)
     shelf = Shelf(SIMS, sessions.given, settings.lesson_dir)
-    return Services(sessions, bridge, shelf, Answers(), Coming(files.AT_ONCE * largest), largest, host)
+    answers, coming = Answers(), Coming(files.AT_ONCE * largest)
+    running = Classes(partial(solved, sessions, answers), settings.class_hours, lambda: sessions.draining)
+    of_classes = ClassSockets(
+        running, bridge.visits, bridge.refusals, bridge.strangers, partial(classes.subject_of, shelf)
+    )
+    return Services(sessions, bridge, shelf, answers, coming, running, of_classes, largest, host)
 
 
 async def _bad_params(request: Request, error: Exception) -> Response:

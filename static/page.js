@@ -17,7 +17,9 @@ function follow(query) {
   const kept = options.filter((name) => given.has(name)).map((name) => [name, given.get(name)]);
   const search = [query, new URLSearchParams(kept).toString().replaceAll("%2C", ",")].filter(Boolean).join("&");
   history.replaceState(null, "", location.pathname + (search && "?" + search) + location.hash);
-  for (const link of document.querySelectorAll("[data-follows], [data-dialog]")) link.search = search;
+  for (const link of document.querySelectorAll("[data-follows], [data-dialog]")) {
+    link.search = [link.dataset.follows, search].filter(Boolean).join("&");
+  }
 }
 
 // When the reader's system turns dark or light, the page follows by its CSS, the sim by loading anew: its address

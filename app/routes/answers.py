@@ -13,8 +13,11 @@ from typing import Any, TypeVar
 
 from starlette.requests import Request
 
+from app.rooms.registry import Sessions
 from app.rooms.solver import workers
+from sims.kit.params import Params
 from sims.kit.progress import Work, at_work
+from sims.kit.sim import Sim
 
 T = TypeVar("T")
 EACH, ALL = 40, 200
@@ -122,6 +125,18 @@ class Answers:
     def close(self) -> None:
         """End the pool."""
         self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+async def solved(sessions: Sessions, answers: Answers, asker: str, sim: Sim[Any, Any], params: Params) -> Any:
+    """The solution of a state for somebody who stays; where it takes long, in the turn of who asks."""
+    if not sim.heavy:
+        return sim.solve(params, *sessions.given(sim))
+    return await answers.find(asker, lambda: sim.solve(params, *sessions.given(sim)), _stays())
+
+
+async def _stays() -> None:
+    """Never ends: whoever gives up cancels it."""
+    await asyncio.Event().wait()
 
 
 async def found_for(request: Request, answers: Answers, find: Callable[[], T]) -> T:

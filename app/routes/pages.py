@@ -142,6 +142,11 @@ async def lesson_script(request: Request, fingerprint: str, name: str) -> Respon
     return _module(request, "lesson", fingerprint, name)
 
 
+@page("/classroom/{fingerprint}/{name}")
+async def class_script(request: Request, fingerprint: str, name: str) -> Response:
+    return _module(request, "classroom", fingerprint, name)
+
+
 def _module(request: Request, folder: str, fingerprint: str, name: str) -> Response:
     known = fingerprint == rendering.modules_fingerprint(folder)
     return _file(request, rendering.modules(folder), name, known=known)

@@ -8,11 +8,13 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from app.classes.registry import Classes
 from app.lessons.shelf import Shelf
 from app.rooms.registry import Sessions
 from app.routes.answers import Answers
 from app.routes.coming import Coming
 from app.sockets.bridge import Bridge
+from app.sockets.classes import ClassSockets
 from sims.kit.viser_internals import ViserHost
 
 
@@ -25,6 +27,8 @@ class Services:
     lessons: Shelf
     answers: Answers
     coming: Coming
+    classes: Classes
+    class_sockets: ClassSockets
     largest: int
     """Bytes that a file may have."""
     host: ViserHost

@@ -18,6 +18,6 @@ class Bridge:
     def __init__(self, host: ViserHost, sessions: Sessions, further: str) -> None:
         self.refusals: Counter[str] = Counter()
         self.visits = Visits(self.refusals, further)
-        strangers = Strangers(self.refusals)
+        self.strangers = strangers = Strangers(self.refusals)
         self.scene = SceneSockets(host, sessions, self.visits, self.refusals, strangers)
         self.channel = ChannelSockets(sessions, self.visits, self.refusals, strangers)

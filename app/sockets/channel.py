@@ -156,16 +156,7 @@ class ChannelSockets:
 
     async def _greet(self, inbox: Inbox, visit: Visit) -> Session:
         """Take the page's first message; a room that isn't running goes on from the state that the page holds."""
-        reading = asyncio.ensure_future(inbox.next())
-        known = self._strangers.enter(reading.cancel, GREETED_WITHIN)
-        try:
-            await asyncio.wait((reading,))
-        finally:
-            known()
-            reading.cancel()
-        if reading.cancelled() or reading.exception() or not isinstance(hello := reading.result().message, Hello):
-            self._refusals["no greeting"] += 1
-            raise Ended(1008)
+        hello = await self._strangers.greeting(inbox, Hello, GREETED_WITHIN)
         visit.ticket, visit.follows = hello.ticket, hello.follows
         session = self._open(visit, *((hello.query, hello.opened) if visit.keyed else ("", "")))
         session.motion.reduced = session.motion.reduced or hello.reduced

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from time import monotonic
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
 from starlette.websockets import WebSocket
 
@@ -18,6 +18,7 @@ NONSENSE = 50
 """Refused messages that one without sense counts as."""
 STRANGERS = 1000
 """Websockets that may be open without having said who they are."""
+T = TypeVar("T")
 
 
 class Decoder(Protocol):
@@ -124,6 +125,20 @@ class Strangers:
         if len(self._waiting) > STRANGERS:
             self._end(next(iter(self._waiting)))
         return partial(self._known, mark)
+
+    async def greeting(self, inbox: Inbox, kind: type[T], seconds: float) -> T:
+        """The first message of a websocket, which says who it is. Raises `Ended` where that isn't said, or too late."""
+        reading = asyncio.ensure_future(inbox.next())
+        known = self.enter(reading.cancel, seconds)
+        try:
+            await asyncio.wait((reading,))
+        finally:
+            known()
+            reading.cancel()
+        if reading.cancelled() or reading.exception() or not isinstance(hello := reading.result().message, kind):
+            self._refusals["no greeting"] += 1
+            raise Ended(1008)
+        return hello
 
     def _known(self, mark: object) -> None:
         if (waiting := self._waiting.pop(mark, None)) is not None:

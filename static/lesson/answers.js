@@ -40,6 +40,7 @@ export class Answers {
     }
     const text = form.querySelector("input")?.value.trim().replace("−", "-").replace(",", ".");
     const value = kind === "set" ? valueAt(this.sim.state ?? { params: {}, solution: {} }, path) : text ? Number(text) : NaN;
+    form.dataset.given = value;
     return Number.isFinite(value) ? Math.abs(value - answer) <= within : null;
   }
 

@@ -29,7 +29,7 @@ export class Live {
     this.buttons = {
       follow: this.button("Follow the view", () => this.follow(true)),
       take: this.button("Take it back", () => this.lend(false)),
-      copy: this.button("Make my own copy", () => location.assign(`${address.shared}#room=${roomOf(sim.path)}`)),
+      copy: this.button("Make my own copy", () => location.assign(`${address.link("embed")}#room=${roomOf(sim.path)}`)),
       back: this.button("Back to the live room", () => this.goBack()),
     };
     view.freed = () => this.follow(false);

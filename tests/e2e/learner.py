@@ -143,6 +143,8 @@ class Sockets:
         return [message for message in self.told if message["type"] == "state"]
 
     def _opened(self, socket: WebSocket) -> None:
+        if "/class/" in socket.url:
+            return
         if "/channel" in socket.url:
             self.column = ColumnModel()
             socket.on("framereceived", self._heard)
