@@ -75,7 +75,7 @@ def test_every_frame_of_the_file_is_the_solution_of_its_state(alone: Page) -> No
         shows(alone, frame)
     expect(slider).to_have_attribute("aria-valuetext", alone.locator("#value").inner_text())
     link = alone.get_by_role("link", name="In the live sim").get_attribute("href") or ""
-    assert f"pitch={-60.0 + 120.0 * 3 / LAST}" in link
+    assert link.endswith("?pitch=-15")
     alone.get_by_role("button", name="Play").click()
     alone.wait_for_function("Number(document.getElementById('at').value) > 4")
     alone.get_by_role("button", name="Pause").click()
