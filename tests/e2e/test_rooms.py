@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from playwright.sync_api import expect
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
@@ -112,3 +113,42 @@ def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themsel
     watcher.sees(selected="roof-near")
     lit(watcher, "near-post")
     lit(teacher, "")
+
+
+def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(classroom: Classroom) -> None:
+    teacher = classroom.open_column("euler-angles/embed?yaw=70")
+    teacher.press("Present")
+    dialog = teacher.frame.get_by_role("dialog", name="Present")
+    watch_link = dialog.get_by_label("Link to watch").input_value()
+    assert watch_link == teacher.watch_link
+
+    watcher = classroom.open_column(watch_link)
+    expect(dialog.get_by_text("1 person is watching.")).to_be_visible()
+    bar = watcher.frame.get_by_role("region", name="Live room")
+    expect(bar.get_by_role("status")).to_contain_text("You are watching")
+    assert watcher.find("button", "Present").is_hidden()
+
+    dialog.get_by_role("button", name="Make a link to steer").press("Enter")
+    steer_link = dialog.get_by_label("Link to steer").input_value()
+    assert steer_link.startswith(f"{watch_link}#steer=")
+    helper = classroom.open_column(steer_link)
+    expect(helper.frame.get_by_role("status").get_by_text("You steer this sim")).to_be_visible()
+    assert "#" not in helper.address
+    helper.type("pitch", "-40")
+    for learner in (teacher, helper, watcher):
+        learner.sees(yaw=70, pitch=-40)
+
+    dialog.get_by_role("button", name="Take it back").press("Enter")
+    expect(helper.frame.get_by_role("status").get_by_text("Control was taken back.")).to_be_visible()
+    expect(helper.control("textbox", "pitch")).to_be_disabled()
+    teacher.page.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()
+
+    bar.get_by_role("button", name="Make my own copy").click()
+    expect(bar.get_by_role("status")).to_have_text("This is your own copy.")
+    assert "/embed?yaw=70&pitch=-40" in watcher.address
+    assert "#" not in watcher.address
+    expect(watcher.control("textbox", "pitch")).to_be_enabled()
+    bar.get_by_role("button", name="Back to the live room").click()
+    expect(bar.get_by_role("status")).to_contain_text("You are watching")
+    assert watcher.address.startswith(watch_link)
