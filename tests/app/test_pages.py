@@ -36,7 +36,6 @@ ADDRESSES = {
     "sharing": f"/sims/{SIM.slug}/share?controls=some&lesson=1",
     "documentation": "/docs",
     "developers": "/developers",
-    "example of a host": "/developers/example",
     "check": "/check",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
