@@ -40,7 +40,6 @@ ADDRESSES = {
     "concepts": "/concepts",
     "about": "/about",
     "developers": "/developers",
-    "example of a host": "/developers/example",
     "check": "/check",
     "no such sim": "/sims/nothing",
     "no such page": "/nothing",
