@@ -114,12 +114,12 @@ class Recording:
         """A value with its arrays, and bytes, replaced by where they are kept."""
         if isinstance(value, dict):
             if "__binary_index" in value:
-                return {"__array": self._array(bytes(arrays[value["__binary_index"]])), "dtype": value["dtype"]}
+                return {"array@": self._array(bytes(arrays[value["__binary_index"]])), "dtype": value["dtype"]}
             return {name: self._kept(each, arrays) for name, each in value.items()}
         if isinstance(value, (list, tuple)):
             return [self._kept(each, arrays) for each in value]
         if isinstance(value, (bytes, memoryview)):
-            return {"__array": self._array(bytes(value)), "dtype": "|u1"}
+            return {"array@": self._array(bytes(value)), "dtype": "|u1"}
         return value
 
     def _array(self, data: bytes) -> int:

@@ -63,8 +63,8 @@ function tables(frames, count) {
 function whole(value, buffer, places) {
   if (Array.isArray(value)) return value.map((each) => whole(each, buffer, places));
   if (typeof value !== "object" || value === null) return value;
-  if ("__array" in value) {
-    const [at, bytes] = places[value.__array];
+  if ("array@" in value) {
+    const [at, bytes] = places[value["array@"]];
     const Kind = KINDS[value.dtype];
     return new Kind(buffer, at, bytes / Kind.BYTES_PER_ELEMENT);
   }

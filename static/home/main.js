@@ -1,6 +1,6 @@
 // A sim that was taken home: plays back what was recorded, without a server.
 import { unpacked } from "./film.js";
-import { column, Query, scene, sim } from "../viewer/page.js";
+import { column, Query, sim } from "../viewer/page.js";
 import { View } from "../viewer/view.js";
 import { describeScene, drawnVersion, prepare, show, start } from "../viewer/viser_dom.js";
 

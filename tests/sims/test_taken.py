@@ -54,8 +54,8 @@ class Film:
             return [self._whole(each) for each in value]
         if not isinstance(value, dict):
             return value
-        if "__array" in value:
-            return np.frombuffer(self._arrays[value["__array"]], value["dtype"])
+        if "array@" in value:
+            return np.frombuffer(self._arrays[value["array@"]], value["dtype"])
         return {name: self._whole(each) for name, each in value.items()}
 
 
