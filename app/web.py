@@ -30,7 +30,16 @@ from sims import SIMS, by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.viser_internals import ViserHost
 
-ROUTERS = (pages.router, lessons.router, text.router, api.router, sockets.router, files.router, watching.router, classes.router)
+ROUTERS = (
+    pages.router,
+    lessons.router,
+    text.router,
+    api.router,
+    sockets.router,
+    files.router,
+    watching.router,
+    classes.router,
+)
 
 
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
