@@ -49,8 +49,8 @@ from sims.kit.viser_internals import ViserHost
 
 ROUTERS = (
     pages.router, lessons.router, code.router, text.router, sharing.router, oembed.router, developers.router,
-    about.router, api.router, sockets.router, files.router,
-    home.router, watching.router, classes.router,
+    about.router, api.router, sockets.router, files.router, home.router,
+    watching.router, classes.router,
 )  # fmt: skip
 
 

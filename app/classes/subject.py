@@ -23,7 +23,7 @@ class Subject:
 
     @property
     def address(self) -> str:
-        """What a frame loads, below the path prefix. A lesson asks its challenges itself, and begins at its first step."""
+        """What a frame loads, below the path prefix. A lesson has its challenges in its text."""
         given = parse_qsl(self.query, keep_blank_values=True)
         kept = [(name, text) for name, text in given if name != "challenge" or self.page.endswith("/embed")]
         return self.page + ("?" + urlencode(kept, safe=",-.:") if kept else "")

@@ -20,7 +20,7 @@ from app.routes.pages import page
 from app.routes.rendering import AnySim
 from app.routes.services import Given, Services
 from sims import by_slug
-from sims.kit.refusals import BadParams
+from sims.kit.refusals import BadParams, Complaint
 from sims.kit.spelling import clipped
 
 NEVER_KEPT = {"cache-control": "no-store"}
@@ -78,7 +78,7 @@ async def begin(request: Request, given: Given) -> Response:
     said = dict(parse_qsl((await request.body()).decode(errors="replace"), keep_blank_values=True))
     address, challenge, state = (said.get(name, "") for name in ("page", "challenge", "state"))
     query = dict(parse_qsl(state, keep_blank_values=True))
-    if said.get("begun") not in ("", None, address.removesuffix("/embed")):
+    if said.get("begun", "") not in ("", address.removesuffix("/embed")):
         query = {}  # the state of another sim
     if challenge:
         query["challenge"] = challenge
@@ -87,17 +87,19 @@ async def begin(request: Request, given: Given) -> Response:
         key = new_key()
         code = await given.classes.code_of(key, request.client.host if request.client else "")
     except BadParams as error:
-        words = "; ".join(
-            f"{name}: received {received or 'nothing'}, allowed is {allowed}"
-            for name, received, allowed, *_ in error.complaints
-        )
+        words = "; ".join(map(_words, error.complaints))
         return _form(request, given, address, challenge, state, words, 422)
     except ValueError:
         return _form(request, given, "", "", "", "Choose a lesson or a sim.", 422)
     except Full as full:
         raise HTTPException(503, str(full), {"retry-after": str(full.wait)}) from None
-    query = links.spelled({"page": subject.page, **dict(parse_qsl(subject.query, keep_blank_values=True))})
-    return RedirectResponse(f"{rendering.base(request)}/class/{code}/{key}/?{query}", 303, NEVER_KEPT)
+    address = links.spelled({"page": subject.page, **dict(parse_qsl(subject.query, keep_blank_values=True))})
+    return RedirectResponse(f"{rendering.base(request)}/class/{code}/{key}/?{address}", 303, NEVER_KEPT)
+
+
+def _words(wrong: Complaint) -> str:
+    name, received, allowed = wrong
+    return f"{name}: received {received or 'nothing'}, allowed is {allowed}"
 
 
 @page("/class/{code}/{key}/", router)
@@ -116,8 +118,11 @@ async def teach(request: Request, given: Given, code: str, key: str) -> Response
         **_data(request, code), "socket": f"{rendering.base(request)}/class/{code}/{key}/socket",
         "page": subject.page, "query": subject.query, "address": subject.address, "link": link,
     }  # fmt: skip
-    return _page(request, "class_teacher.html", data, title=_title(given, subject), challenge=_goal(subject), code=code,
-                 link=link, qr=segno.make(link, error="m").svg_inline(scale=8, omitsize=True, dark="#000", light="#fff"))  # fmt: skip
+    qr = segno.make(link, error="m").svg_inline(scale=8, omitsize=True, dark="#000", light="#fff")
+    return _page(
+        request, "class_teacher.html", data, title=_title(given, subject), challenge=_goal(subject), code=code,
+        link=link, qr=qr,
+    )  # fmt: skip
 
 
 def _title(given: Services, subject: Subject) -> str:

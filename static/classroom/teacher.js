@@ -14,7 +14,6 @@ class Teacher {
     this.mine = null; // the teacher's own state, while a learner's is shown
     this.wanted = null; // what the sim is to show as soon as it is there
     this.stage = new Stage(document.querySelector(".shown iframe"), {
-      "sim3:ready": () => this.restore(),
       "sim3:state": ({ params }) => this.take(params),
     });
     this.grid = new Grid((animal) => this.socket.send({ type: "ask", animal }));
@@ -54,7 +53,7 @@ class Teacher {
   }
 
   take(params) {
-    if (this.wanted) return;
+    if (this.wanted) return this.restore();
     this.params = params;
     this.socket.send({ type: "show", params });
   }
@@ -79,7 +78,7 @@ class Teacher {
   banner(words) {
     const banner = document.querySelector(".banner");
     banner.hidden = !words;
-    banner.querySelector("span").textContent = words;
+    banner.querySelector("output").textContent = words;
   }
 
   press(button) {

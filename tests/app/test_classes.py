@@ -233,18 +233,19 @@ def test_no_other_key_leads_a_class(local: Local, teacher: Teacher) -> None:
 @pytest.mark.parametrize("page", ["", "sims/none/embed", "lessons/none", "../x", "https://elsewhere.example/"])
 def test_a_class_is_about_pages_of_this_server_only(local: Local, page: str) -> None:
     key = new_key()
-    with connect(f"{local.url}/class/{code_of(key)}/{key}/socket", viser=False) as socket:
-        socket.send(json.dumps({"type": "open", "page": page}))
-        assert closed(socket) == 4403
+    socket = connect(f"{local.url}/class/{code_of(key)}/{key}/socket", viser=False)
+    socket.send(json.dumps({"type": "open", "page": page}))
+    assert closed(socket) == 4403
 
 
 def test_a_learner_hears_of_nobody_else_and_may_say_nothing_of_the_teachers(local: Local, teacher: Teacher) -> None:
     before = local.refusals["class"]
     with Learner(local, teacher.code) as hostile, Learner(local, teacher.code) as other:
-        for words in (
+        nonsense: list[Any] = [
             {"type": "show", "params": {"yaw": 1}}, {"type": "look", "eyes": True}, {"type": "end"},
             {"type": "ask", "animal": other.animal}, {"type": "guess", "box": -1, "value": 0}, {"type": "at"}, [],
-        ):  # fmt: skip
+        ]  # fmt: skip
+        for words in nonsense:
             hostile.socket.send(json.dumps(words))
         local.refused("class", before + 6)
         before_states = local.refusals["class state"]

@@ -25,16 +25,18 @@ def seat(classroom: Classroom, size: ViewportSize) -> Page:
     return page
 
 
+def inside(frame: Frame, selector: str) -> Frame:
+    """The frame in a frame."""
+    found = frame.wait_for_selector(selector)
+    assert found is not None
+    content = found.content_frame()
+    assert content is not None
+    return content
+
+
 def sim_of(page: Page) -> Frame:
-    """The frame of the sim, in the page or in a lesson there."""
-    page.wait_for_function("[...document.querySelectorAll('iframe')].some((each) => each.contentDocument?.body)")
-    lesson = next(frame for frame in page.frames if frame.url.split("?")[0].endswith(f"/sims/{SLUG}"))
-    inside = lesson.wait_for_selector("iframe")
-    assert inside is not None
-    frame = inside.content_frame()
-    assert frame is not None
-    frame.wait_for_selector(".s3-column input")
-    return frame
+    """The frame of the sim in the lesson of somebody's page."""
+    return inside(inside(page.main_frame, "iframe"), "iframe[data-slug]")
 
 
 def put(page: Page, params: Mapping[str, Any]) -> None:
