@@ -78,7 +78,7 @@ class Teacher {
   banner(words) {
     const banner = document.querySelector(".banner");
     banner.hidden = !words;
-    banner.querySelector("output").textContent = words;
+    banner.querySelector("[role=status]").textContent = words;
   }
 
   press(button) {
