@@ -20,12 +20,14 @@ from sims.kit.sim import Library
 log = logging.getLogger("sim3")
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 LEARNT = re.compile(r"\{concept:([a-z0-9-]+)")
+TITLE = re.compile(r"^title:\s*(.+?)\s*$", re.MULTILINE)
 MINUTES = re.compile(r"^minutes:\s*(\d+)\s*$", re.MULTILINE)
 
 
 class Outline(NamedTuple):
     """What the course says of a sim's lesson, which needn't be loaded for it."""
 
+    title: str
     minutes: int | None
     concepts: tuple[str, ...]
     """Slugs of those that are learnt in it."""
@@ -94,8 +96,8 @@ class Shelf:
 
 
 def _outline(text: str) -> Outline:
-    minutes = MINUTES.search(text)
-    return Outline(int(minutes[1]) if minutes else None, tuple(LEARNT.findall(text)))
+    title, minutes = TITLE.search(text), MINUTES.search(text)
+    return Outline(title[1] if title else "", int(minutes[1]) if minutes else None, tuple(LEARNT.findall(text)))
 
 
 def place(sim: AnySim) -> Path:

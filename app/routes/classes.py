@@ -48,7 +48,7 @@ def sim_of(shelf: Shelf, address: str) -> AnySim | None:
         lesson = shelf.own.get(found["name"])
         return None if lesson is None else lesson.sim
     sim = by_slug(found["slug"])
-    return None if sim is None or (not found["alone"] and shelf.of_sim(sim) is None) else sim
+    return None if sim is None or (not found["alone"] and sim.slug not in shelf.outlines) else sim
 
 
 @page("/class", router)
@@ -67,7 +67,7 @@ def _form(
     request: Request, given: Services, address: str, challenge: str, state: str, wrong: str = "", status: int = 200
 ) -> Response:
     return rendering.render(
-        request, "class_open.html", status=status, lesson_of=given.lessons.of_sim, own=given.lessons.own,
+        request, "class_open.html", status=status, outlines=given.lessons.outlines, own=given.lessons.own,
         address=address, challenge=challenge, state=state, wrong=wrong,
     )  # fmt: skip
 
@@ -129,8 +129,8 @@ def _title(given: Services, subject: Subject) -> str:
     if subject.page.endswith("/embed"):
         return subject.sim.title
     name = subject.page.removeprefix("lessons/")
-    lesson = given.lessons.own.get(name) or given.lessons.of_sim(subject.sim)
-    return lesson.title if lesson else subject.sim.title
+    lesson = given.lessons.own.get(name) or given.lessons.outlines.get(subject.sim.slug)
+    return subject.sim.title if lesson is None else lesson.title
 
 
 def _goal(subject: Subject) -> Any:

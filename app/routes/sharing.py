@@ -35,7 +35,7 @@ ANYBODY = {"access-control-allow-origin": "*"}
 @page("/sims/{slug}/share", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _share(request, given, sim, f"sims/{slug}", given.lessons.of_sim(sim))
+    return _share(request, given, sim, f"sims/{slug}", await given.lessons.soon(sim))
 
 
 @page("/lessons/{name}/share", router)
