@@ -40,6 +40,8 @@ def test_what_is_imported_when_the_sims_run_is_declared() -> None:
     known, allowed = packages_distributions(), declared()
     assert "numpy" in imported()
     for name, place in imported().items():
+        if "/script_" in place:  # runs where a learner has its libraries
+            continue
         assert {normal(d) for d in known.get(name, [name])} & allowed, f"{place} imports {name}, which isn't declared"
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
+import httpx
 import msgspec
 
 from app.rooms.keys import new_key, room_of
@@ -19,7 +20,7 @@ from sims import SIMS
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import PROTOCOL
 from tests.app.page import Page
-from tests.server import Server, camera_message
+from tests.server import PATIENCE, Server, camera_message
 
 SECONDS = 12.0
 VISITS = 1500
@@ -264,6 +265,9 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
                 staying.popleft().close()
             visits += 1
             if visits == 200:
+                httpx.get(
+                    f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE
+                )  # its lesson is there
                 warm = server.memory()
         for connection in staying:
             connection.close()

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 from collections.abc import Iterator, Mapping
+from html import unescape
 from pathlib import Path
 
 import httpx
@@ -135,7 +136,7 @@ def test_all_of_it_is_reached_through_a_proxy(places: Mapping[str, str], way: st
         for page in (f"{PREFIX}/", f"{PREFIX}/sims/{SLUG}", f"{PREFIX}/sims/{SLUG}/embed", f"{PREFIX}/docs"):
             answer = client.get(page)
             assert answer.status_code == 200, page
-            used = re.findall(r'(?:src|href)="(/[^"]+)"', answer.text)
+            used = [unescape(each) for each in re.findall(r'(?:src|href)="(/[^"]+)"', answer.text)]
             assert used
             for address in {*used}:
                 assert address.startswith(PREFIX), f"{page} uses {address}"

@@ -95,6 +95,7 @@ def test_share_gives_a_link_to_the_same_state(classroom: Classroom) -> None:
     link = learner.page.evaluate("navigator.clipboard.readText()")
     assert "/s/" not in link, "a shared link opens a room of its own"
 
+    learner.page.keyboard.press("Escape")
     friend = classroom.open(link)
     assert friend.sees(yaw=123, order="zxz") == solution
     np.testing.assert_allclose(friend.sockets.camera["position"], [4, 1, 2], atol=1e-6)
