@@ -267,7 +267,7 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
             if visits == 200:
                 httpx.get(
                     f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE
-                )  # its lesson is there
+                )  # loaded
                 warm = server.memory()
         for connection in staying:
             connection.close()
