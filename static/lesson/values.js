@@ -93,9 +93,10 @@ export class Values {
     this.forgive(input);
     if (value === this.value(input) && value === Number(input.ariaValueNow)) return;
     put(input, value);
-    if (!this.sim.state) return;
-    const changes = changed(this.sim.state.params, input.dataset.drag, value);
-    Object.assign(this.sim.state.params, changes); // the next step goes on from here
+    const params = this.sim.state?.params ?? {}; // before the sim has said a word, a number alone can be moved all the same
+    const changes = changed(params, input.dataset.drag, value);
+    if (!changes) return;
+    Object.assign(params, changes); // the next step goes on from here
     this.sim.move(changes);
   }
 
@@ -144,7 +145,8 @@ export class Values {
 // What sets a number: its parameter, or the whole list that it stands in.
 function changed(params, name, value) {
   const [list, k] = name.split(".");
-  return { [list]: k === undefined ? value : params[list].with(Number(k), value) };
+  if (k === undefined) return { [list]: value };
+  return params[list] && { [list]: params[list].with(Number(k), value) };
 }
 
 function put(input, value) {
