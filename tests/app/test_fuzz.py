@@ -256,6 +256,7 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         seen: Counter[bytes] = Counter()
         staying: deque[socket.socket] = deque()
         neighbour.start()
+        httpx.get(f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE)  # lessons are loaded then
         begin, warm, visits = time.monotonic(), 0.0, 0
         while visits < VISITS and time.monotonic() - begin < SECONDS:
             for connection, status in pay(server, strangers.visit(visits)):
@@ -265,9 +266,6 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
                 staying.popleft().close()
             visits += 1
             if visits == 200:
-                httpx.get(
-                    f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE
-                )  # loaded
                 warm = server.memory()
         for connection in staying:
             connection.close()

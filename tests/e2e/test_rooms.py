@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from playwright.sync_api import expect
 
@@ -129,6 +131,7 @@ def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(cla
     assert watcher.find("button", "Present").is_hidden()
 
     dialog.get_by_role("button", name="Make a link to steer").press("Enter")
+    expect(dialog.get_by_label("Link to steer")).to_have_value(re.compile(r"#steer=[\w-]{10,}$"))
     steer_link = dialog.get_by_label("Link to steer").input_value()
     assert steer_link.startswith(f"{watch_link}#steer=")
     helper = classroom.open_column(steer_link)
