@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
+
+
+def address_of(connection: HTTPConnection) -> str:
+    """The address of who asks, as far as trusted proxies tell; empty where there is none."""
+    return connection.client.host if connection.client else ""
 
 
 class Forwarded(ProxyHeadersMiddleware):

@@ -10,6 +10,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sims.kit.paste import LONGEST
 
+ANYWHERE = {"access-control-allow-origin": "*"}
+"""For what pages of any site may read, and frames that are sandboxed into an origin of their own."""
+NEVER_KEPT = {"cache-control": "no-store"}
+
 
 class Headers:
     """Adds a content security policy (nothing from other hosts) and its companions."""

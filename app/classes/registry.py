@@ -31,7 +31,7 @@ class Classes:
         self._draining = draining
         self._by_code: dict[str, Class] = {}
         self._ends: dict[str, asyncio.TimerHandle] = {}
-        self._fairness = Fairness(EACH, A_MINUTE)
+        self._fairness = Fairness(EACH, A_MINUTE, "classes")
         self._pool = workers("class", 1)
 
     def __len__(self) -> int:
@@ -43,7 +43,7 @@ class Classes:
 
     async def code_of(self, key: str, address: str) -> str:
         """The code of the class that a key leads. Raises `Full` where an address asks for too many."""
-        self._fairness.may_open(neighbourhood(address), ())
+        self._fairness.count(neighbourhood(address))
         return await asyncio.get_running_loop().run_in_executor(self._pool, code_of, key)
 
     async def open(self, code: str, key: str, subject: Subject, ends: float | None, address: str) -> Class:
@@ -64,8 +64,7 @@ class Classes:
     def _begin(self, code: str, key: str, subject: Subject, ends: float | None, opener: str) -> None:
         if self._draining():
             raise Full("The server is being restarted.", wait=2)
-        if opener and sum(each.opener == opener for each in self._by_code.values()) >= EACH:
-            raise Full(f"Your network has {EACH} classes on this server already, as many as one may.")
+        self._fairness.may_have(opener, self._by_code.values())
         if len(self._by_code) >= MOST_CLASSES:
             self._drop_one()
         latest = time.time() + self._seconds

@@ -50,22 +50,31 @@ class Openings:
 
 
 class Fairness:
-    """At most `each` rooms for an address at once, and `a_minute` new ones a minute, all at once if need be."""
+    """At most `each` rooms for an address at once, and `a_minute` new ones a minute, all at once if need be.
 
-    def __init__(self, each: int, a_minute: int) -> None:
+    Who has no address, as on a socket of this machine, always may. `what` people call them.
+    """
+
+    def __init__(self, each: int, a_minute: int, what: str = "sims") -> None:
         self._each = each
         self._a_minute = a_minute
+        self._what = what
         self._openings: OrderedDict[str, Openings] = OrderedDict()
 
     def may_open(self, opener: str, places: Iterable[Place]) -> None:
-        """Count one in. Raises `Full` in words. Who has no address, as on a socket of this machine, always may."""
+        """Count one in. Raises `Full` in words."""
+        self.may_have(opener, places)
+        self.count(opener)
+
+    def may_have(self, opener: str, places: Iterable[Place]) -> None:
+        """Whether an address may have one more. Raises `Full` in words."""
+        if opener and sum(place.opener == opener for place in places) >= self._each:
+            raise Full(f"Your network has {self._each} {self._what} open on this server already, as many as one may.")
+
+    def count(self, opener: str) -> None:
+        """Count one of this minute. Raises `Full` in words."""
         if not opener:
             return
-        if sum(place.opener == opener for place in places) >= self._each:
-            raise Full(f"Your network has {self._each} sims open on this server already, as many as one may.")
-        self._count(opener)
-
-    def _count(self, opener: str) -> None:
         now, rate = monotonic(), self._a_minute / MINUTE
         known = self._openings.pop(opener, None) or Openings(self._a_minute, now)
         known.left = min(known.left + (now - known.at) * rate, self._a_minute)
@@ -74,6 +83,6 @@ class Fairness:
         if len(self._openings) > REMEMBERED:
             self._openings.popitem(last=False)
         if known.left < 1.0:
-            words = f"Your network has opened {self._a_minute} sims within a minute, as many as one may."
+            words = f"Your network has opened {self._a_minute} {self._what} within a minute, as many as one may."
             raise Full(words, wait=max(1, round((1.0 - known.left) / rate)))
         known.left -= 1.0

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from starlette.requests import Request
 
+from app.proxies import address_of
 from app.rooms.registry import Sessions
 from app.rooms.solver import workers
 from sims.kit.params import Params
@@ -141,7 +142,7 @@ async def _stays() -> None:
 
 async def found_for(request: Request, answers: Answers, find: Callable[[], T]) -> T:
     """What `find` makes, in the turn of a request's address and as long as its caller is there."""
-    return await answers.find("" if request.client is None else request.client.host, find, _left(request))
+    return await answers.find(address_of(request), find, _left(request))
 
 
 async def _left(request: Request) -> None:

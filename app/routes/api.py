@@ -16,17 +16,17 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.routes.answers import RETRY, Busy, found_for
 from app.routes.rendering import sim_or_404
 from app.routes.services import Given, Services
+from app.security import ANYWHERE
 from app.trouble import question
 from app.values import complaints, shown, strict
 from geometry import GeometryError
 from sims import SIMS
-from sims.kit.challenge import checked
+from sims.kit.challenge import checked, told
 from sims.kit.params import Params
 from sims.kit.schema import solution_schema
 from sims.kit.sim import Sim, jsonable
 
 AnySim = Sim[Any, Any]
-ANYWHERE = {"access-control-allow-origin": "*"}
 
 
 class Json(Response):
@@ -158,7 +158,7 @@ def _details(sim: AnySim) -> dict[str, Any]:
         **_card(sim),
         "objectives": [{"text": o.text, "level": o.level} for o in sim.objectives],
         "actions": [{"name": a.name, "label": a.label} for a in sim.actions],
-        "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
+        "challenges": told(sim.challenges),
         "parameters": sim.params.model_json_schema(),
     }
 

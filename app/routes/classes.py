@@ -6,24 +6,24 @@ import re
 from typing import Any
 from urllib.parse import parse_qsl
 
-import segno
 from fastapi import APIRouter, HTTPException, Request, WebSocket
 from fastapi.responses import RedirectResponse, Response
 
 from app.classes.codes import is_code, is_key
 from app.classes.subject import Subject
 from app.lessons.shelf import Shelf
+from app.proxies import address_of
 from app.rooms.keys import new_key
 from app.rooms.places import Full
-from app.routes import links, rendering
+from app.routes import links, qr, rendering
 from app.routes.pages import page
 from app.routes.rendering import AnySim
 from app.routes.services import Given, Services
+from app.security import NEVER_KEPT
 from sims import by_slug
 from sims.kit.refusals import BadParams, Complaint
 from sims.kit.spelling import clipped
 
-NEVER_KEPT = {"cache-control": "no-store"}
 PAGE = re.compile(r"sims/(?P<slug>[a-z-]+)(?P<alone>/embed)?|lessons/(?P<name>[a-z0-9-]+)")
 """What a class may be about, as addresses below the path prefix: a sim alone, its lesson, or a lesson of the school."""
 router = APIRouter(include_in_schema=False)
@@ -85,7 +85,7 @@ async def begin(request: Request, given: Given) -> Response:
     try:
         subject = subject_of(given.lessons, address, links.spelled(query))
         key = new_key()
-        code = await given.classes.code_of(key, request.client.host if request.client else "")
+        code = await given.classes.code_of(key, address_of(request))
     except BadParams as error:
         words = "; ".join(map(_words, error.complaints))
         return _form(request, given, address, challenge, state, words, 422)
@@ -118,10 +118,9 @@ async def teach(request: Request, given: Given, code: str, key: str) -> Response
         **_data(request, code), "socket": f"{rendering.base(request)}/class/{code}/{key}/socket",
         "page": subject.page, "query": subject.query, "address": subject.address, "link": link,
     }  # fmt: skip
-    qr = segno.make(link, error="m").svg_inline(scale=8, omitsize=True, dark="#000", light="#fff")
     return _page(
         request, "class_teacher.html", data, title=_title(given, subject), challenge=_goal(subject), code=code,
-        link=link, qr=qr,
+        link=link, qr=qr.inline(link),
     )  # fmt: skip
 
 
@@ -156,11 +155,6 @@ def _page(request: Request, template: str, data: dict[str, Any], **context: Any)
     response = rendering.render(request, template, data=data, bare=True, **context)
     response.headers.update(NEVER_KEPT)
     return response
-
-
-@page("/class/", router)
-async def without_slash(request: Request) -> Response:
-    return RedirectResponse(f"{rendering.base(request)}/class")
 
 
 @router.websocket("/class/{code}/socket")

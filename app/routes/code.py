@@ -9,6 +9,7 @@ from app import scripts
 from app.routes import links
 from app.routes.pages import page
 from app.routes.rendering import sim_or_404
+from app.security import ANYWHERE
 from sims.kit.params import Params
 from sims.kit.refusals import BadParams, Complaint
 from sims.kit.sim import Sim
@@ -33,10 +34,7 @@ async def code(request: Request, slug: str) -> Response:
         link = f"{request.base_url}sims/{slug}" + (f"?{query}" if query else "")
         text = scripts.notebook(text, sim.title, link)
     name = f"sim3-{slug}-{found.title.lower()}.{asked['format']}"
-    headers = {
-        "content-disposition": f'attachment; filename="{name}"',
-        "access-control-allow-origin": "*",  # a sandboxed frame has no origin
-    }
+    headers = {"content-disposition": f'attachment; filename="{name}"', **ANYWHERE}
     return Response(text, media_type=f"{KINDS[asked['format']]}; charset=utf-8", headers=headers)
 
 

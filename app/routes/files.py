@@ -10,7 +10,7 @@ from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import JSONResponse, Response
 from pydantic import ValidationError
 
-from app import metrics
+from app import metrics, security
 from app.rooms.keys import room_of
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
@@ -27,7 +27,7 @@ AT_ONCE = 4
 KEPT = 10
 """Largest files that all sessions together may keep."""
 ANYWHERE = {
-    "access-control-allow-origin": "*", "access-control-allow-methods": "POST",
+    **security.ANYWHERE, "access-control-allow-methods": "POST",
     "access-control-allow-headers": "content-type",
 }  # fmt: skip
 """A sandboxed frame has no origin; the key in the address is the secret."""
@@ -96,7 +96,7 @@ async def download(given: Given, slug: str, room: str, key: str, name: str) -> R
         raise HTTPException(404, GONE if session is None else "There is no such file.")
     loop = asyncio.get_running_loop()
     data = await loop.run_in_executor(given.sessions.aside, make, session.params, *session.given)
-    headers = {"content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store"}
+    headers = {"content-disposition": f'attachment; filename="{name}"', **security.NEVER_KEPT}
     return Response(data, media_type="application/octet-stream", headers=headers)
 
 

@@ -18,6 +18,7 @@ from app.routes.answers import Busy, found_for
 from app.routes.coming import Refusal
 from app.routes.rendering import sim_or_404
 from app.routes.services import Given
+from app.security import ANYWHERE, NEVER_KEPT
 from app.settings import ROOT
 from geometry import GeometryError
 from sims.kit import pane, viser_client
@@ -34,8 +35,6 @@ AnySim = Sim[Any, Any]
 FRAMES = 72
 """Frames that a sweep has, unless fewer are asked for."""
 HEAVY = "This sim works too long for a sweep: its state can be taken home."
-ANYWHERE = {"access-control-allow-origin": "*"}
-"""Frames that are sandboxed have no origin."""
 OURS = ("sweep", "from", "to", "frames")
 SHEETS = ("tokens.css", "readouts.css", "viewer.css", "viser.css", "home.css")
 SCRIPTS = {"viewer": ("page.js", "view.js", "viser_dom.js"), "home": ("film.js",)}
@@ -99,8 +98,8 @@ def _headers(sim: AnySim, wish: Wish) -> dict[str, str]:
     what = f"-{wish.swept.name}" if wish.swept else ""
     name = f"sim3-{sim.slug}{what}-{_today()}.html"
     return {
-        "content-disposition": f'attachment; filename="{name}"', "cache-control": "no-store",
-        **ANYWHERE, "access-control-expose-headers": "content-disposition",
+        "content-disposition": f'attachment; filename="{name}"', **NEVER_KEPT, **ANYWHERE,
+        "access-control-expose-headers": "content-disposition",
     }  # fmt: skip
 
 

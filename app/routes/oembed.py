@@ -14,6 +14,7 @@ from app.routes.own import Place, place_of
 from app.routes.rendering import fingerprint
 from app.routes.services import Given, Services
 from app.routes.snippets import HEIGHT, iframe
+from app.security import ANYWHERE
 from sims import by_slug
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Sim
@@ -23,7 +24,7 @@ WIDTH = 800
 PICTURE = (800, 600)
 """Pixels of a sim's still picture."""
 A_DAY = 86400
-HEADERS = {"access-control-allow-origin": "*", "cache-control": f"public, max-age={A_DAY}"}
+HEADERS = {**ANYWHERE, "cache-control": f"public, max-age={A_DAY}"}
 SHOWN = re.compile(r"sims/(?P<slug>[a-z-]+)(/embed)?/?|lessons/(?P<name>[a-z0-9-]+)/?")
 """What can be shown by its address: never a room, whose link may share control of it."""
 
@@ -41,7 +42,7 @@ async def oembed(request: Request, given: Given) -> Response:
     try:
         return JSONResponse(_answer(request, given), headers=HEADERS)
     except Refused as refused:
-        return JSONResponse({"detail": str(refused)}, refused.status, {"access-control-allow-origin": "*"})
+        return JSONResponse({"detail": str(refused)}, refused.status, ANYWHERE)
 
 
 def _answer(request: Request, given: Services) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 
+from app import security
+from app.proxies import address_of
 from app.rooms.keys import is_room, new_key, room_of
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
@@ -26,8 +28,8 @@ from sims.kit.sim import Sim
 from sims.kit.spelling import clipped
 
 AnySim = Sim[Any, Any]
-FOR_EVER = {"access-control-allow-origin": "*", "cache-control": "public, max-age=31536000, immutable"}
-"""For what never changes under its address, also in frames that are sandboxed into an origin of their own."""
+FOR_EVER = {**security.ANYWHERE, "cache-control": "public, max-age=31536000, immutable"}
+"""For what never changes under its address."""
 router = APIRouter(include_in_schema=False)
 
 
@@ -78,8 +80,9 @@ async def _joined(request: Request, given: Services, sim: AnySim, room: str, key
     session = None
     if request.method != "HEAD":  # nobody is there to use a session
         try:
-            address = request.client.host if request.client else ""
-            session = _opened(given.sessions, sim, room, params, address, changes=bool(links.parts(query).params))
+            session = _opened(
+                given.sessions, sim, room, params, address_of(request), changes=bool(links.parts(query).params)
+            )
             params = session.params
         except GeometryError as error:  # of what no parameter's bounds exclude
             raise refusal_of(params, error) from None
@@ -173,6 +176,7 @@ async def with_slash(request: Request) -> Response:
 @page("/sims/{slug}/")
 @page("/sims/{slug}/embed/")
 @page("/docs/")
+@page("/class/")
 async def without_slash(request: Request) -> Response:
     return _redirect(request, request.scope["path"].rstrip("/"))
 

@@ -13,9 +13,11 @@ from fastapi.responses import Response
 from starlette.templating import Jinja2Templates
 
 from app import scripts
+from app.security import NEVER_KEPT
 from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit import viser_client
+from sims.kit.challenge import told
 from sims.kit.palette import DARK
 from sims.kit.paste import LONGEST
 from sims.kit.scene.view import FIELD
@@ -91,7 +93,7 @@ def viewer(
         "code": f"{place}/code" if scripts.script(sim, "numpy") else "",
         "files": None if sim.files is None else {"largest": largest},
         "steps": steps,
-        "challenges": [{"id": c.id, "title": c.title, "goal": c.goal} for c in sim.challenges],
+        "challenges": told(sim.challenges),
         "paste": None if sim.paste is None else {"longest": LONGEST},
         "label": {"ink": DARK.ink, "plate": DARK.page},
         "share": static(request, "share.js"), "main": module(request, "main.js"), "client": f"{client}/loader.js",
@@ -101,7 +103,7 @@ def viewer(
         request, "viewer.html", sim=sim, data=data, client=client, modules=modules(), text=f"{place}/text",
         column=column, bare=options.get("controls") == "0",
     )  # fmt: skip
-    response.headers["cache-control"] = "no-store"
+    response.headers.update(NEVER_KEPT)
     return response
 
 

@@ -12,10 +12,10 @@ from prometheus_client import CONTENT_TYPE_PLAIN_0_0_4
 
 from app import metrics
 from app.routes.services import Given, Services
+from app.security import NEVER_KEPT
 from sims import SIMS
 
 router = APIRouter(include_in_schema=False)
-NEVER_KEPT = {"cache-control": "no-store"}
 
 
 @router.api_route("/healthz", methods=["GET", "HEAD"])

@@ -13,6 +13,7 @@ from starlette.websockets import WebSocket
 from app.classes.live import Class, Learner
 from app.classes.registry import Classes, Wrong
 from app.classes.subject import Subject
+from app.proxies import address_of
 from app.rooms.places import Full
 from app.rooms.telling import Listener
 from app.sockets.class_messages import (
@@ -64,8 +65,7 @@ class ClassSockets:
 
     async def teach(self, ws: WebSocket, code: str, key: str) -> None:
         """Serve a teacher's page."""
-        address = ws.client.host if ws.client else ""
-        await self._serve(ws, teacher_decoder, lambda inbox, tell: self._teach(inbox, tell, code, key, address))
+        await self._serve(ws, teacher_decoder, lambda inbox, tell: self._teach(inbox, tell, code, key, address_of(ws)))
 
     async def _serve(self, ws: WebSocket, decoder: Decoder, talk: Callable[[Inbox, Listener], Any]) -> None:
         """Let a page talk until it goes, and close with a code that says why."""

@@ -21,7 +21,7 @@ from app.sockets.commands import Commands
 from app.sockets.inbox import Ended, Inbox, Read, Strangers
 from app.sockets.viser_messages import ViewerCameraMessage, decoder
 from app.sockets.visits import Visit, Visits, close
-from sims.kit.scene.view import FIELD, Seen
+from sims.kit.scene.view import FIELD, Seen, aspect
 from sims.kit.sim import Sim
 from sims.kit.viewer import Viewer
 from sims.kit.viser_internals import PROTOCOL, ViserHost, Wire
@@ -151,5 +151,4 @@ class SceneSockets:
 def _lead(session: Session, visit: Visit, camera: ViewerCameraMessage) -> None:
     """Let others see from there. Who looks through a camera of the sim does so by its state, which all have."""
     if abs(camera.fov - FIELD) < 1e-3:
-        aspect = (camera.image_width or 1) / (camera.image_height or 1)
-        session.audience.looked(visit, Seen(camera.position, camera.look_at, aspect))
+        session.audience.looked(visit, Seen(camera.position, camera.look_at, aspect(camera)))

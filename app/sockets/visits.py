@@ -17,6 +17,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from app.proxies import address_of
 from app.sockets import origins
 from app.sockets.channel_messages import Hello
 from app.sockets.commands import Answer
@@ -81,9 +82,7 @@ class Visits:
         """The visit that a socket belongs to; the first of its two sockets begins it, the last one ends it."""
         name = ws.query_params.get("viewer", "")
         name = f"{sim.slug}/{room}/{watching}/{name}" if re.fullmatch(r"[a-z0-9]{8,40}", name) else ""
-        visit = self._open.get(name) or Visit(
-            sim, room, not watching, name, ws.client.host if ws.client else "", watching=watching
-        )
+        visit = self._open.get(name) or Visit(sim, room, not watching, name, address_of(ws), watching=watching)
         self._open[name or str(id(visit))] = visit
         visit.sockets.add(ws)
         try:

@@ -57,6 +57,11 @@ def nearer(left: float, far: float, within: float, words: str, done: str) -> Pro
     return Progress(min(max(1.0 - left / far, 0.0), 0.99), words)
 
 
+def told(challenges: Sequence[Challenge[P, S]]) -> list[dict[str, str]]:
+    """What a page says of challenges: plain values for JSON."""
+    return [{"id": each.id, "title": each.title, "goal": each.goal} for each in challenges]
+
+
 def checked(
     challenges: Sequence[Challenge[P, S]], params: P, solution: S, before: tuple[P, S] | None = None
 ) -> dict[str, dict[str, Any]]:

@@ -45,7 +45,8 @@ class Seen:
         return [*map(float, np.asarray(self.look_at) + away), *self.look_at]
 
 
-def _aspect(camera: Any) -> float:
+def aspect(camera: Any) -> float:
+    """Width over height of the page that a camera is seen in."""
     return float((camera.image_width or 1) / (camera.image_height or 1))  # a frame that is hidden again has none
 
 
@@ -57,7 +58,7 @@ def _half(aspect: float) -> float:
 def look(camera: Any, position: Vector, look_at: Vector, radius: float) -> None:
     """Look from a place at another, or from so far behind it that a sphere of `radius` fits."""
     away = np.subtract(position, look_at)
-    away *= radius / math.sin(math.atan(_half(_aspect(camera)))) / float(np.linalg.norm(away))
+    away *= radius / math.sin(math.atan(_half(aspect(camera)))) / float(np.linalg.norm(away))
     camera.position = np.asarray(look_at) + away
     camera.look_at = np.asarray(look_at)
 
@@ -66,7 +67,7 @@ def look_through(camera: Any, window: Window) -> None:
     """Look from a place at another, upright as said, with a whole window in sight."""
     across, down = window.half
     camera.position, camera.look_at, camera.up_direction = map(np.array, (window.position, window.look_at, window.up))
-    camera.fov = 2.0 * math.atan(SPARE * max(down, across / _aspect(camera)))
+    camera.fov = 2.0 * math.atan(SPARE * max(down, across / aspect(camera)))
     camera.near = window.near
 
 
