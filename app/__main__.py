@@ -49,7 +49,6 @@ def main() -> None:
 
     serving = asyncio.run_coroutine_threadsafe(serve(), host.loop)
     threading.Thread(target=announce, args=(server, settings), daemon=True).start()
-    threading.Thread(target=app.state.services.lessons.load_all, daemon=True).start()
     while not finished.wait(0.2):
         pass
     with contextlib.suppress(SystemExit):

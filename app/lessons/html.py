@@ -63,7 +63,9 @@ class Writer:
         self._sim = sim
         self._library = library
         self._mistakes = mistakes
-        self._state = read(sim, "", library)
+        self._states = {"": read(sim, "", library)}
+        """Those that queries name: each is solved once."""
+        self._state = self._states[""]
         self._line = 1
         self._ids: set[str] = set()
         self._parts: list[tuple[int, str]] = []  # lines and targets of links to a part of this lesson
@@ -194,7 +196,10 @@ class Writer:
 
     def _state_of(self, query: str) -> State:
         try:
-            return read(self._sim, query, self._library)
+            asked = query.removeprefix("?")
+            if asked not in self._states:
+                self._states[asked] = read(self._sim, asked, self._library)
+            return self._states[asked]
         except LookupError as error:
             raise Wrong(f"the state {query}", str(error.args[0])) from None
 

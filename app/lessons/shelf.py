@@ -6,7 +6,7 @@ import asyncio
 import logging
 import re
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -62,10 +62,9 @@ class Shelf:
                 self._of_sims[sim.slug] = self._load(path, sim.slug) if path.is_file() else None
             return self._of_sims[sim.slug]
 
-    def load_all(self) -> None:
-        """Load the lessons of all sims, so that nobody waits for one."""
-        for sim in self._sims:
-            self.of_sim(sim)
+    def loading(self) -> list[Callable[[], object]]:
+        """What loads the lessons of all sims, one by one, so that nobody waits for one."""
+        return [partial(self.of_sim, sim) for sim in self._sims]
 
     @cached_property
     def outlines(self) -> dict[str, Outline]:

@@ -59,13 +59,16 @@ class Drawing:
         self._drawn_at = 0.0
         self.work: Work | None = None
         """What the pool does for this session."""
+        self._latency = metrics.LATENCY.labels(sim.slug)
+        self._solving = metrics.SOLVING.labels(sim.slug)
+        self._coalesced = metrics.COALESCED.labels(sim.slug)
         self.words = ""
         """What a motion says, in place of the caption."""
 
     def soon(self) -> None:
         """Solve and draw soon; calls before that happens join it."""
         if self._dirty:
-            metrics.COALESCED.labels(self.sim.slug).inc()
+            self._coalesced.inc()
         else:
             self._asked_at = time.monotonic()
         self._dirty = True
@@ -108,7 +111,7 @@ class Drawing:
                 if self._telling.listeners:
                     self._telling.tell(self._showing.news(self.solved, self.solution, self.version, self.words))
                 self._drawn_at = time.monotonic()
-                metrics.LATENCY.labels(self.sim.slug).observe(self._drawn_at - asked_at)
+                self._latency.observe(self._drawn_at - asked_at)
                 self._telling.tell_state_soon()
         except Exception:
             metrics.FAILURES.labels(self.sim.slug, "draw").inc()
@@ -124,7 +127,7 @@ class Drawing:
         try:
             self.solution = await (self._work_out(params) if self.sim.heavy else self._at_once(params))
             self.solved, self.version = params, version
-            metrics.SOLVING.labels(self.sim.slug).observe(time.monotonic() - begun)
+            self._solving.observe(time.monotonic() - begun)
         except Superseded:
             raise
         except Exception as error:

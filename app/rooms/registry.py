@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -52,7 +52,7 @@ class Sessions:
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
         self._ahead = workers("ahead", 1)
         self._begun: set[str] = set()
-        """Sims whose work ahead has begun."""
+        """Names of the work ahead that has begun."""
 
     def __len__(self) -> int:
         return len(self._by_room)
@@ -99,15 +99,17 @@ class Sessions:
         session.opener = opener
         self._by_room[sim.slug, room] = session
         session.waiting = True
-        if sim.ahead and sim.slug not in self._begun and session.drawing.task is not None:
-            self._begun.add(sim.slug)
-            session.drawing.task.add_done_callback(lambda _: self._work_ahead(sim))
+        if sim.ahead and session.drawing.task is not None:
+            session.drawing.task.add_done_callback(lambda _: self.work_ahead(sim.slug, sim.ahead))
         return session
 
-    def _work_ahead(self, sim: Sim[Any, Any]) -> None:
-        """Begin with what people in that sim will need soon."""
+    def work_ahead(self, name: str, pieces: Iterable[Callable[[], object]]) -> None:
+        """Begin, once for a name, with work that somebody will need soon: a piece at a time, giving way to all else."""
+        if name in self._begun:
+            return
+        self._begun.add(name)
         with suppress(RuntimeError):  # the server ends already
-            for piece in sim.ahead:
+            for piece in pieces:
                 self._ahead.submit(piece)
 
     def _drop_one(self) -> None:

@@ -63,6 +63,8 @@ class Session:
         self._solver = solver
         self._told: tuple[tuple[Params, Any], ...] = ()
         """The last two states that were told, with their solutions."""
+        self._near: dict[str, Any] = {}
+        """How near the last of them is to each challenge."""
         self.telling = Telling(self.state)
         self.audience = Audience()
         turn = asyncio.Lock()  # of what is worked out for this session: one thing at a time
@@ -343,8 +345,9 @@ class Session:
         params, solution = self.drawing.solved, self.solution
         if not self._told or self._told[-1][0] != params:
             self._told = (*self._told[-1:], (params, solution))
-        before = self._told[0] if len(self._told) > 1 else None
-        return checked(self.sim.challenges, params, solution, before)
+            before = self._told[0] if len(self._told) > 1 else None
+            self._near = checked(self.sim.challenges, params, solution, before)
+        return self._near
 
     # ---- its tasks
 

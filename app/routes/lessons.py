@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import segno
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import RedirectResponse, Response
 
 from app.lessons.concepts import CONCEPTS, MEANINGS
 from app.lessons.lesson import Lesson
-from app.routes import code, links, rendering
+from app.routes import code, links, qr, rendering
 from app.routes.card import card
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
@@ -25,7 +24,9 @@ async def launcher(request: Request, given: Given) -> Response:
 @page("/sims/{slug}", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _lesson(request, sim, await given.lessons.soon(sim), f"sims/{slug}")
+    lesson = await given.lessons.soon(sim)
+    given.sessions.work_ahead("lessons", given.lessons.loading())  # who reads one will read others
+    return _lesson(request, sim, lesson, f"sims/{slug}")
 
 
 @page("/lessons/{name}", router)
@@ -46,7 +47,7 @@ def _lesson(request: Request, sim: AnySim, lesson: Lesson | None, path: str) -> 
     return rendering.render(
         request, "sim.html", sim=sim, lesson=lesson, query=query, scripts=code.shown(sim, params), address=address,
         path=path, card=card(request, sim, lesson, path),
-        code_of_address=segno.make(address, micro=False).svg_inline(scale=3, border=0),
+        code_of_address=qr.inline(address),
     )  # fmt: skip
 
 

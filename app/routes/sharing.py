@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable
 from typing import Any
 
-import segno
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import Response
 
-from app.lessons.lesson import Lesson
 from app.routes import links, rendering
+from app.routes import qr as codes
 from app.routes.own import place_of
 from app.routes.pages import page
 from app.routes.rendering import AnySim, sim_or_404
 from app.routes.services import Given, Services
 from app.routes.snippets import HEIGHT, snippets
+from app.security import ANYWHERE
 from sims.kit.refusals import BadParams, Complaint
 from sims.kit.sim import Library
 from sims.kit.spelling import clipped
@@ -28,14 +27,12 @@ LOWEST, HIGHEST = 200, 2000
 """Pixels that a frame may be high."""
 LONGEST = 1000
 """Characters of a link in whose code a phone finds the squares from the back row."""
-ANYBODY = {"access-control-allow-origin": "*"}
-"""For what a sim's page asks for by itself: in a sandboxed frame it has an origin of its own."""
 
 
 @page("/sims/{slug}/share", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    return _share(request, given, sim, f"sims/{slug}", await given.lessons.soon(sim))
+    return _share(request, given, sim, f"sims/{slug}", steps=slug in given.lessons.outlines)
 
 
 @page("/lessons/{name}/share", router)
@@ -43,10 +40,10 @@ async def of_own(request: Request, given: Given, name: str) -> Response:
     if name not in given.lessons.own:
         raise HTTPException(404, f"There is no lesson named {name[:60]!r}.")
     lesson = given.lessons.own[name]
-    return _share(request, given, lesson.sim, f"lessons/{name}", lesson)
+    return _share(request, given, lesson.sim, f"lessons/{name}", steps=bool(lesson.steps))
 
 
-def _share(request: Request, given: Services, sim: AnySim, path: str, lesson: Lesson | None) -> Response:
+def _share(request: Request, given: Services, sim: AnySim, path: str, *, steps: bool) -> Response:
     """The page, which is the dialog's content too. Without JavaScript its form leads to the next one."""
     asked = request.query_params
     items = linked(asked.multi_items())
@@ -56,12 +53,12 @@ def _share(request: Request, given: Services, sim: AnySim, path: str, lesson: Le
     embed = f"sims/{sim.slug}/embed{search}"
     link = f"{request.base_url}{path}{search}" if asked.get(OPENS) == "lesson" else f"{request.base_url}{embed}"
     response = rendering.render(
-        request, "share.html", sim=sim, lesson=lesson, path=path, state=state, options=dict(options),
+        request, "share.html", sim=sim, steps=steps, path=path, state=state, options=dict(options),
         opens=asked.get(OPENS), seen=asked.get(SEEN) or dict(options).get("view", ""), height=height,
         bounds=(LOWEST, HIGHEST), controls=_controls(sim, given.sessions.given(sim)), link=link,
         short=len(link) <= LONGEST, embed=embed, snippets=snippets(f"{request.base_url}{embed}", sim.title, height),
     )  # fmt: skip
-    response.headers.update(ANYBODY)
+    response.headers.update(ANYWHERE)
     return response
 
 
@@ -94,12 +91,9 @@ def _controls(sim: AnySim, library: tuple[Library, ...]) -> list[tuple[str, str]
 
 @router.api_route("/qr", methods=["GET", "HEAD"])
 async def qr(request: Request, url: str = "") -> Response:
-    """A link of this server's as a picture that a phone's camera reads: dark on light, whatever the theme."""
+    """The code of a link of this server."""
     if place_of(request, url) is None:
         raise HTTPException(404, "There are codes for links of this server only.")
     if len(url) > LONGEST:
         raise HTTPException(404, f"A link in a code may have {LONGEST} characters; this one has {len(url)}.")
-    drawn = io.BytesIO()
-    code = segno.make(url, error="l", micro=False, boost_error=True)
-    code.save(drawn, kind="svg", border=4, light="#fff", dark="#000", omitsize=True, title="QR code of the link")
-    return Response(drawn.getvalue(), media_type="image/svg+xml", headers={"cache-control": "public, max-age=86400"})
+    return Response(codes.svg(url), media_type="image/svg+xml", headers={"cache-control": "public, max-age=86400"})

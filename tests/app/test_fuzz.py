@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-import httpx
 import msgspec
 
 from app.rooms.keys import new_key, room_of
@@ -20,7 +19,7 @@ from sims import SIMS
 from sims.kit.sim import Sim
 from sims.kit.viser_internals import PROTOCOL
 from tests.app.page import Page
-from tests.server import PATIENCE, Server, camera_message
+from tests.server import Server, camera_message
 
 SECONDS = 12.0
 VISITS = 1500
@@ -256,7 +255,6 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         seen: Counter[bytes] = Counter()
         staying: deque[socket.socket] = deque()
         neighbour.start()
-        httpx.get(f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE)  # lessons are loaded then
         begin, warm, visits = time.monotonic(), 0.0, 0
         while visits < VISITS and time.monotonic() - begin < SECONDS:
             for connection, status in pay(server, strangers.visit(visits)):

@@ -27,7 +27,7 @@ from sims.kit.viser_internals import PROTOCOL, Wire
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
 from tests.frames import encode_message
-from tests.server import PATIENCE, Server, camera_message, wait_for
+from tests.server import Server, camera_message, wait_for
 
 NAN, INFINITE = float("nan"), float("inf")
 VECTOR, PLACE = (0.0, 0.0, 0.0), (0.5, 0.5)
@@ -599,7 +599,6 @@ def test_memory_stays_flat_and_the_log_stays_clean() -> None:
             learner.works()
             return server.memory()
 
-        httpx.get(f"{server.url}/sims/point-cloud", trust_env=False, timeout=3 * PATIENCE)  # all lessons are there
         warm = abuse(15)
         assert abuse(30) - warm < 8.0, "megabytes"
         learner.works()
