@@ -1,7 +1,8 @@
 // The live room: who steers it and who watches, whose view is seen, and a copy of one's own.
+import { dialog } from "./dialog.js";
+import { copied } from "./giving.js";
 import { lock } from "./lock.js";
 import { element, scene, sim } from "./page.js";
-import { dialog } from "./toolbar.js";
 
 const KEPT = ["theme", "controls", "only"]; // of the page's options, on the way back into the room
 const PRESENT = `
@@ -127,15 +128,9 @@ export class Live {
 
   async copy(field) {
     const said = this.box.querySelector("[role=status]");
-    try {
-      // Frames of other sites may not; asking all the same would leave an error in the console.
-      if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
-      await navigator.clipboard.writeText(field.value);
-      said.textContent = "Link copied.";
-    } catch {
-      field.select();
-      said.textContent = "The link is selected: copy it with Ctrl C.";
-    }
+    const done = await copied(field.value);
+    if (!done) field.select();
+    said.textContent = done ? "Link copied." : "The link is selected: copy it with Ctrl C.";
   }
 }
 

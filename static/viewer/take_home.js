@@ -1,4 +1,6 @@
 // The dialog in which a sim is taken home: its present state, or a sweep of one number, as one file.
+import { dialog } from "./dialog.js";
+import { download } from "./giving.js";
 import { element, Query, sim } from "./page.js";
 
 const FORM = `<p>One file that opens from a memory stick, without server and network. In it, the scene can be turned.</p>
@@ -9,13 +11,12 @@ const FORM = `<p>One file that opens from a memory stick, without server and net
     <p role="status"></p><div class="s3-actions"><button class="s3-primary">Save the file</button></div></form>`;
 
 export class TakeHome {
-  constructor(address, dialog) {
+  constructor(address) {
     this.address = address;
-    this.dialog = dialog;
   }
 
   async open() {
-    this.dialog("Take it home", FORM);
+    dialog("Take it home", FORM);
     this.form = document.querySelector(".s3-take");
     this.said = this.form.querySelector("[role=status]");
     const { sweep, what } = this.form.elements;
@@ -57,9 +58,7 @@ export class TakeHome {
       const answer = await asked(this.place("home", wanted));
       const name = /filename="(.*)"/.exec(answer.headers.get("content-disposition"))[1];
       const href = URL.createObjectURL(await answer.blob());
-      const link = element("a", { href, download: name });
-      link.click();
-      link.remove();
+      download(href, name);
       setTimeout(() => URL.revokeObjectURL(href), 60_000);
       this.said.textContent = `Saved as ${name}.`;
     });
@@ -76,7 +75,7 @@ export class TakeHome {
 
   // An address beside this sim's page, in its state, view and theme.
   place(name, more = {}) {
-    const url = new URL(this.address.of(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, `/${name}`)), location.href);
+    const url = new URL(this.address.link(name));
     const query = new Query(url.search);
     for (const [key, value] of Object.entries({ theme: sim.dark ? "dark" : "light", ...more })) query.set(key, value);
     url.search = query;

@@ -1,13 +1,15 @@
 // The buttons that every sim has: share, save the picture, keys, downloads.
-import { column, element, sim } from "./page.js";
+import { dialog } from "./dialog.js";
+import { copied, download } from "./giving.js";
+import { column, sim } from "./page.js";
 import { TakeHome } from "./take_home.js";
-import { sceneCanvas } from "./viser_dom.js";
+import { paintedCanvas } from "./viser_dom.js";
 
 export class Toolbar {
   constructor(address, words, files, view, paste, live) {
     this.address = address;
     this.words = words;
-    this.takeHome = new TakeHome(address, dialog);
+    this.takeHome = new TakeHome(address);
     const does = {
       share: (button) => this.share(button),
       code: () => this.copyCode(),
@@ -44,18 +46,15 @@ export class Toolbar {
   }
 
   async copy(words, done, title) {
-    try {
-      // Frames of other sites may not; asking all the same would leave an error in the console.
-      if (document.featurePolicy?.allowsFeature("clipboard-write") === false) throw new Error("not allowed");
-      await navigator.clipboard.writeText(words);
+    if (await copied(words)) {
       this.words.notify(done);
-    } catch {
-      const tag = words.includes("\n") ? 'textarea rows="12"' : "input";
-      dialog(title, `<p><${tag} class="s3-link" readonly aria-label="${title}">${tag === "input" ? "" : "</textarea>"}</p>`);
-      const field = document.querySelector(".s3-link");
-      field.value = words;
-      field.select();
+      return;
     }
+    const tag = words.includes("\n") ? 'textarea rows="12"' : "input";
+    dialog(title, `<p><${tag} class="s3-link" readonly aria-label="${title}">${tag === "input" ? "" : "</textarea>"}</p>`);
+    const field = document.querySelector(".s3-link");
+    field.value = words;
+    field.select();
   }
 
   async copyCode() {
@@ -80,22 +79,8 @@ function enlarge(figure) {
 }
 
 function savePicture() {
-  const canvas = sceneCanvas();
+  const canvas = paintedCanvas();
   requestAnimationFrame(() => download(canvas.toDataURL("image/png"), `${sim.slug}.png`));
-}
-
-function download(href, name) {
-  const link = element("a", { href, download: name });
-  link.click();
-  link.remove();
-}
-
-export function dialog(title, html) {
-  document.querySelector("dialog.s3-dialog")?.remove();
-  const box = element("dialog", { class: "s3-dialog", "aria-label": title });
-  box.innerHTML = `<h2>${title}</h2>${html}<button type="button" data-s3="close">Close</button>`;
-  box.showModal();
-  return box;
 }
 
 function showKeys() {

@@ -188,6 +188,7 @@ def test_no_other_ticket_steers(room: Room, ticket: str) -> None:
 def test_a_page_that_keeps_its_scene_alone_steers_no_more(local: Local, room: Room) -> None:
     helped = room.watch(ticket=room.hand_over())
     helped.until(lambda: part(helped).get("steers"), "control")
+    room.teacher.until(lambda: part(room.teacher)["helpers"] == 1, "the other to be known")
     helped.channel.close()
     room.teacher.until(lambda: part(room.teacher)["helpers"] == 0, "the other to be gone")
     before = local.refusals["watching"]
