@@ -6,6 +6,10 @@ const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
 const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
 const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
+const COARSER = 0.75; // of the resolution, where a machine needs more than SLOW milliseconds for half of its frames
+const SLOW = 40;
+const QUICK = 20; // milliseconds with which it gets the whole one back; a coarser frame has half the pixels
+const SAMPLES = 16; // frames between two such decisions
 let viewer = null; // viser's own state, once it is there
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
@@ -17,6 +21,7 @@ export function prepare(view, looked, blind) {
     initialCameraPosition: view.slice(0, 3).join(","),
     initialCameraLookAt: view.slice(3).join(","),
     initialCameraFov: `${sim.field}`,
+    fixedDpr: `${wholeResolution()}`,
     ...(sim.dark ? { darkMode: "1" } : {}),
   });
   window.URLSearchParams = class extends Query {
@@ -87,7 +92,7 @@ function adopt(looked) {
     get: () => viewer,
     set: (mutable) => {
       viewer = mutable;
-      drawLess(mutable);
+      drawLess(mutable, sharpness(mutable));
       watchCamera(mutable, looked);
     },
   });
@@ -95,7 +100,7 @@ function adopt(looked) {
 
 // viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. Two frames show
 // a change, and one more, when nothing has changed for a while, what comes late.
-function drawLess(mutable) {
+function drawLess(mutable, drawn) {
   const whole = mutable.requestRender;
   let late = 0;
   const frames = (count) => mutable.scene.__r3f.root.getState().invalidate(count);
@@ -105,10 +110,38 @@ function drawLess(mutable) {
       return;
     }
     frames(2);
+    requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
     clearTimeout(late);
     late = setTimeout(() => frames(1), SETTLED);
   };
   Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
+}
+
+// Pixels of the screen for one of the page, within the bounds that viser's client has too.
+function wholeResolution() {
+  return Math.min(Math.max(devicePixelRatio, 1), 2);
+}
+
+// viser's client lowers its resolution when few frames come, as they do here whenever little changes; and each change of
+// it holds up a frame. It keeps one instead, coarser only where two frames that follow each other take long. What comes
+// back is told how long they took. The resolution follows a page that is zoomed.
+function sharpness(mutable) {
+  const root = mutable.scene.__r3f.root;
+  let share = 1;
+  let times = [];
+  const keep = ({ viewport, setDpr }) => {
+    const wanted = share * wholeResolution();
+    if (viewport.dpr !== wanted) setDpr(wanted);
+  };
+  root.subscribe(keep);
+  return (took) => {
+    times.push(took);
+    if (times.length < SAMPLES) return;
+    const middle = times.sort((a, b) => a - b)[SAMPLES / 2];
+    times = [];
+    share = middle > SLOW ? COARSER : middle < QUICK ? 1 : share;
+    keep(root.getState());
+  };
 }
 
 // What viser tells the server of its camera tells us from where the scene is looked at.

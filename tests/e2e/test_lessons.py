@@ -20,8 +20,8 @@ def reader(classroom: Classroom) -> Learner:
 
 def entered(classroom: Classroom, path: str) -> Learner:
     learner = classroom.open_column("gimbal-lock/embed", size=DESK, reduced_motion="reduce")
+    learner.leave()  # what this page's sim still says isn't taken for the lesson's
     learner.page.goto(f"{learner.url}/sims/{path}")
-    learner.sockets.forget()
     learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
     learner.until(lambda: bool(learner.sockets.states))
     expect(learner.page.locator("html.live")).to_be_attached()
