@@ -3,7 +3,7 @@ import { dialog } from "./dialog.js";
 import { copied, download } from "./giving.js";
 import { column, sim } from "./page.js";
 import { TakeHome } from "./take_home.js";
-import { paintedCanvas } from "./viser_dom.js";
+import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
   constructor(address, words, files, view, paste, live) {
@@ -79,7 +79,7 @@ function enlarge(figure) {
 }
 
 function savePicture() {
-  const canvas = paintedCanvas();
+  const canvas = sceneCanvas();
   requestAnimationFrame(() => download(canvas.toDataURL("image/png"), `${sim.slug}.png`));
 }
 

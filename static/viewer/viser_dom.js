@@ -182,16 +182,10 @@ function avoidModuleWorkers() {
   };
 }
 
-// viser makes a new canvas when it connects anew, and leaves the old one for a while: the scene is what is seen.
+// The canvas that the scene is painted on. viser makes a new one when it connects anew, and leaves the old one for a
+// while; to look for it among them by its size would lay the page out at each key and each state.
 export function sceneCanvas() {
-  const area = (canvas) => canvas.clientWidth * canvas.clientHeight;
-  return [...scene.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
-}
-
-// The one that is painted: another, without pixels of its own, may lie over it.
-export function paintedCanvas() {
-  const pixels = (canvas) => canvas.width * canvas.height;
-  return [...scene.querySelectorAll("canvas")].filter(pixels).sort((a, b) => pixels(b) - pixels(a))[0];
+  return viewer?.canvas ?? null;
 }
 
 // The scene can have the focus; people who don't see it hear what is there.
