@@ -26,6 +26,14 @@ FIRST = -179
 HELLO = {"type": "hello", "dark": False, "reduced": False, "query": ""}
 
 
+def yaw_of(message: Message) -> int | None:
+    """To how many degrees a message turns the node that the slider turns; None where it does something else."""
+    if message["type"] != "SetOrientationMessage" or message["name"] != TURNED:
+        return None
+    w, _, _, z = message["wxyz"]
+    return round(math.degrees(2.0 * math.atan2(z, w)))
+
+
 class Learner:
     """One page in a room of its own."""
 
@@ -83,11 +91,9 @@ class Learner:
 
     def _look(self, frame: bytes, now: float) -> None:
         for message in decode_frame(frame):
-            kind = message["type"]
-            if kind == "SetOrientationMessage" and message["name"] == TURNED:
-                w, _, _, z = message["wxyz"]
-                self._see(round(math.degrees(2.0 * math.atan2(z, w))), now)
-            elif kind == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
+            if (yaw := yaw_of(message)) is not None:
+                self._see(yaw, now)
+            elif message["type"] == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
                 self._slider = message["uuid"]
 
     def _see(self, value: int, now: float) -> None:

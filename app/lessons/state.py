@@ -18,6 +18,7 @@ from sims.kit.controls import letters, unit_of
 from sims.kit.fields import Vector
 from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
+from sims.kit.progress import goes_on
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
@@ -138,7 +139,8 @@ def _can_be_shown(value: Any) -> None:
 
 
 def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
-    """The state that a query names. Raises LookupError in words."""
+    """The state that a query names. Raises LookupError in words; `Superseded` where a server ends that reads ahead."""
+    goes_on()
     try:
         items = parse_qsl(query.removeprefix("?"), keep_blank_values=True, strict_parsing=bool(query.strip("?")))
     except ValueError:

@@ -16,6 +16,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from websockets.exceptions import InvalidStatus
 
 from app import logs
+from app.rooms import telling
 from app.settings import Settings
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
@@ -79,8 +80,22 @@ def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -
             assert (refused.status_code, refused.headers["retry-after"]) == (503, "2")
             assert "restarted" in refused.text
             page.works()
+            assert (
+                http.get(f"/sims/{SLUG}").status_code == 200
+            )  # and it reads lessons, which nobody waits for at the end
         server.send_end()  # asked for the second time, it ends at once
         assert closed(page.channel) == 1012
+
+
+def test_before_it_ends_pages_are_told_the_state_with_which_they_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(telling, "STATE_INTERVAL", 1e9)
+    with Local() as local, Page(local.url) as page:
+        page.slide("yaw", 33)
+        page.until(lambda: "by 33.0°" in page.column.html("read"), "the slider to be obeyed")
+        assert page.params["yaw"] != 33.0
+        local.drain()
+        page.until(lambda: page.params["yaw"] == 33.0, "the state")
+        page.works()
 
 
 def test_json_lines_say_the_same_and_nothing_secret() -> None:
