@@ -82,7 +82,7 @@ def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -
             page.works()
             assert (
                 http.get(f"/sims/{SLUG}").status_code == 200
-            )  # and it reads lessons, which nobody waits for at the end
+            )  # lessons are read, for nobody
         server.send_end()  # asked for the second time, it ends at once
         assert closed(page.channel) == 1012
 
