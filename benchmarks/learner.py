@@ -61,6 +61,11 @@ class Learner:
 
     async def open(self, *, within: float = 60.0) -> None:
         """Connect as the page does; returns when the controls and the first state have come."""
+        await self.connect()
+        await asyncio.wait_for(self._opened.wait(), within)
+
+    async def connect(self) -> None:
+        """The same, of any sim, without the wait."""
         viewer = secrets.token_hex(8)
         options: dict[str, Any] = {"compression": None, "max_size": None, "ping_interval": None}
         if "/s/" in self._url:
@@ -71,7 +76,6 @@ class Learner:
         self._viser = await self._stack.enter_async_context(viser_socket)
         await self._viser.send(encode_message(self._camera))
         self._tasks.append(asyncio.create_task(self._watch()))
-        await asyncio.wait_for(self._opened.wait(), within)
 
     async def _listen(self, channel: ClientConnection) -> None:
         await channel.send(json.dumps(HELLO))

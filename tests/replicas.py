@@ -26,6 +26,7 @@ def configuration(port: int, servers: list[Server]) -> str:
     text = re.sub(r"^resolvers docker\n(?:    .*\n)+", "", text, flags=re.M)
     text = text.replace("bind :8080", f"bind 127.0.0.1:{port}").replace("log stdout format raw local0 notice", "")
     text = text.replace("    log global\n", "")
+    text = re.sub(r"\$\{\w+:-([^}]*)\}", r"\1", text)  # as compose does for a variable that isn't set
     template = re.compile(r"^(\s*)server-template replica \d+ replica:8000 (.*) resolvers docker init-addr none$", re.M)
     found = template.findall(text)
     assert len(found) == 2, "two backends find their servers by a template"
@@ -38,10 +39,10 @@ def configuration(port: int, servers: list[Server]) -> str:
 
 
 class Replicas:
-    """Some servers and what balances them, while the context lasts."""
+    """Some servers and what balances them, while the context lasts; settings as keyword arguments."""
 
-    def __init__(self, folder: Path, count: int) -> None:
-        self.servers = [Server(**SETTINGS) for _ in range(count)]
+    def __init__(self, folder: Path, count: int, **settings: str) -> None:
+        self.servers = [Server(**SETTINGS, **settings) for _ in range(count)]
         self.port = free_port()
         self._folder = folder
         self._stack = ExitStack()

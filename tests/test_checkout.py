@@ -46,7 +46,7 @@ def test_what_is_imported_when_the_sims_run_is_declared() -> None:
 
 
 def test_the_image_holds_what_the_server_reads() -> None:
-    """`ROOT / "name"` in what runs names a file or folder of the checkout; .dockerignore says which are in the image."""
+    """`ROOT / "name"` in what runs is a file or folder of the checkout; .dockerignore says which are in the image."""
     held = {line[1:] for line in (ROOT / ".dockerignore").read_text("utf-8").splitlines() if line.startswith("!")}
     read = {
         node.right.value: f"{path.relative_to(ROOT)}:{node.lineno}"
