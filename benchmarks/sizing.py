@@ -83,7 +83,7 @@ def dragging(less: bool) -> Iterator[str]:
         with Sim3() as server:
             row = server.load("drag", count, seconds=3 if less else 8)
         each = row["cpu_ms_per_update"]
-        yield f"{count} dragging 20 times a second: {each:.2f} ms of a core each time, {2.0 * each:.1f} % of it a learner"
+        yield f"{count} dragging 20 times a second: {each:.2f} ms of a core each time, {2.0 * each:.1f} % of it each"
 
 
 def first_load(slug: str, *, packed: bool) -> tuple[int, int]:
