@@ -38,7 +38,7 @@ from tests.server import PATIENCE, Server, camera_message
 LEARNERS, SERVERS, RATE = 30, 3, 5.0
 """Learners, processes, and how often a second each hand moves."""
 LOADS_ANEW = 5
-"""Of so many learners, one loads the page anew in each rest."""
+"""One of so many learners loads the page anew in each rest."""
 AGAIN = 1.0
 """Seconds until viser's client tries again; the first time it does so at once."""
 LOOKED_EVERY = 2.0

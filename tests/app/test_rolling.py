@@ -11,7 +11,7 @@ import pytest
 from tests.dragger import Dragger
 from tests.proxies import find
 from tests.replicas import Replicas
-from tests.server import PATIENCE
+from tests.server import PATIENCE, wait_for
 
 LEARNERS = 6
 
@@ -40,15 +40,22 @@ def test_a_restart_behind_a_balancer_costs_nobody_a_state(tmp_path: Path) -> Non
         assert all(each.shown == each.value for each in learners)
         assert sum(each.connections for each in learners) > LEARNERS, "somebody had to come back"
         assert sum(replicas.rooms()) == LEARNERS, "a room is in one process"
-        _each_address_has_its_places(replicas.url)
+        _each_address_has_its_places(replicas)
 
 
-def _each_address_has_its_places(url: str) -> None:
+def _each_address_has_its_places(replicas: Replicas) -> None:
     """Also where a proxy that is trusted stands before the balancer."""
 
     def ask(address: str) -> int:
-        page = f"{url}/sims/euler-angles/embed"
+        page = f"{replicas.url}/sims/euler-angles/embed"
         return httpx.get(page, headers={"x-forwarded-for": address}, trust_env=False, timeout=PATIENCE).status_code
 
-    assert [ask("192.0.2.1") for _ in range(2 * LEARNERS + 1)][-1] == 503
+    before = replicas.rooms()
+
+    def taken() -> bool:
+        ask("192.0.2.1")
+        return all(now == then + LEARNERS for now, then in zip(replicas.rooms(), before, strict=True))
+
+    wait_for(taken, "all places of an address to be taken, on each server")
+    assert ask("198.51.100.7, 192.0.2.1") == 503
     assert ask("192.0.2.2") == 200
