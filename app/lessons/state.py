@@ -18,6 +18,7 @@ from sims.kit.controls import letters, unit_of
 from sims.kit.fields import Vector
 from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
+from sims.kit.progress import Superseded, goes_on
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
@@ -138,7 +139,8 @@ def _can_be_shown(value: Any) -> None:
 
 
 def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
-    """The state that a query names. Raises LookupError in words."""
+    """The state that a query names. Raises LookupError in words; `Superseded` where a server ends that reads ahead."""
+    goes_on()
     try:
         items = parse_qsl(query.removeprefix("?"), keep_blank_values=True, strict_parsing=bool(query.strip("?")))
     except ValueError:
@@ -147,6 +149,8 @@ def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
         params = links.read(sim, items)
         state = State(sim, params.query(), params, _view(dict(items)), library)
         state.solution  # noqa: B018 what has no solution isn't a state of a lesson
+    except Superseded:
+        raise
     except BadParams as error:
         name, _, allowed = error.complaints[0][:3]
         raise LookupError(f"for {name}: {allowed}") from None

@@ -23,6 +23,7 @@ class Telling:
         self._state = state
         self._told_at = 0.0
         self._waiting: asyncio.TimerHandle | None = None
+        self._interval = STATE_INTERVAL
 
     def tell(self, message: Message, *, but: Listener | None = None) -> None:
         """Tell everybody but one."""
@@ -33,8 +34,15 @@ class Telling:
     def tell_state_soon(self) -> None:
         """Tell the state that will be the newest then."""
         if self._waiting is None:
-            wait = self._told_at + STATE_INTERVAL - time.monotonic()
+            wait = self._told_at + self._interval - time.monotonic()
             self._waiting = asyncio.get_running_loop().call_later(max(wait, 0.0), self._tell_state)
+
+    def hurry(self) -> None:
+        """Tell each state at once from now on: a page may soon have to go on from it elsewhere."""
+        self._interval = 0.0
+        if self._waiting is not None:
+            self._waiting.cancel()
+            self._tell_state()
 
     def _tell_state(self) -> None:
         self._waiting = None

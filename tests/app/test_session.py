@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Annotated, Any
 
@@ -32,6 +33,7 @@ from sims.kit.params import Params
 from sims.kit.progress import Superseded, begins, goes_on
 from sims.kit.sim import Action, Sim, Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
+from tests.server import PATIENCE
 
 
 class Eye:
@@ -1115,6 +1117,28 @@ def test_work_ahead_is_done_once_after_the_first_drawing() -> None:
         assert done[0] > 0
         assert done[1] > 10
         await sessions.close()
+
+    run(test)
+
+
+def test_work_ahead_ends_with_the_server() -> None:
+    """Python would wait for it, at the end of the process too."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def piece() -> None:
+        begun.set()
+        with suppress(Superseded):
+            while True:
+                goes_on()
+                time.sleep(0.001)
+        ended.set()
+
+    async def test() -> None:
+        sessions = Sessions(10)
+        sessions.work_ahead("pieces", [piece])
+        assert await asyncio.to_thread(begun.wait, PATIENCE)
+        await sessions.close()
+        assert await asyncio.to_thread(ended.wait, PATIENCE)
 
     run(test)
 

@@ -16,6 +16,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from websockets.exceptions import InvalidStatus
 
 from app import logs
+from app.rooms import telling
 from app.settings import Settings
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
@@ -47,6 +48,7 @@ def test_metrics_count_what_happens() -> None:
         updates = ("sim3_update_seconds_count", SLUG)
         assert during[updates] > before.get(updates, 0)
         assert during["process_resident_memory_bytes", ""] > 1e7
+        assert during["sim3_failures_total", f"{SLUG} draw"] == 0  # there before the first, which is an increase
         with pytest.raises(InvalidStatus):
             connect(f"{local.url}/sims/{SLUG}/s/{'0' * 20}/wrong/channel", viser=False)
         assert measured(local)["sim3_refused_total", "address"] == 1
@@ -79,8 +81,20 @@ def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -
             assert (refused.status_code, refused.headers["retry-after"]) == (503, "2")
             assert "restarted" in refused.text
             page.works()
+            assert http.get(f"/sims/{SLUG}").status_code == 200  # lessons are read, for nobody
         server.send_end()  # asked for the second time, it ends at once
         assert closed(page.channel) == 1012
+
+
+def test_before_it_ends_pages_are_told_the_state_with_which_they_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(telling, "STATE_INTERVAL", 1e9)
+    with Local() as local, Page(local.url) as page:
+        page.slide("yaw", 33)
+        page.until(lambda: "by 33.0°" in page.column.html("read"), "the slider to be obeyed")
+        assert page.params["yaw"] != 33.0
+        local.drain()
+        page.until(lambda: page.params["yaw"] == 33.0, "the state")
+        page.works()
 
 
 def test_json_lines_say_the_same_and_nothing_secret() -> None:
@@ -98,6 +112,13 @@ def test_json_lines_say_the_same_and_nothing_secret() -> None:
     assert said["level"] == "error"
     assert said["message"] == "drawing camera failed in the state fx=300"
     assert "ZeroDivisionError: by the seed" in said["traceback"]
+
+
+def test_compose_passes_every_setting_on() -> None:
+    compose = yaml.safe_load((ROOT / "compose.yaml").read_text("utf-8"))
+    settings = {f"SIM3_{name.upper()}" for name in Settings.model_fields} - {"SIM3_FORWARDED_ALLOW_IPS"}
+    own = {"SIM3_HOST", "SIM3_PORT", "SIM3_DRAIN_SECONDS"}  # the image's, the host's and the balancer's
+    assert {*compose["x-settings"]} == settings - own | {"FORWARDED_ALLOW_IPS"}
 
 
 def manifests() -> list[dict[str, Any]]:
