@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import httpx
 import pytest
@@ -70,7 +70,7 @@ def test_a_class_behind_a_balancer_outlives_the_restart_of_its_process(replicas:
 
         def sit(kind: Callable[..., Seat], *args: Any, **more: Any) -> Seat:
             """Come in as a page does, which tries again until it is let in."""
-            found: list[Seat] = []
+            found: list[Any] = []
 
             def come() -> bool:
                 with suppress(ConnectionClosed, InvalidHandshake, OSError):
@@ -78,7 +78,7 @@ def test_a_class_behind_a_balancer_outlives_the_restart_of_its_process(replicas:
                 return bool(found)
 
             wait_for(come, "a place in the class")
-            return found[0]
+            return cast("Seat", found[0])
 
         def work(teacher: Teacher, learners: list[Learner]) -> list[str]:
             """The animals of all, once the teacher sees how far each is."""
