@@ -82,8 +82,8 @@ class Learner:
 
         async def listen() -> None:
             with suppress(ConnectionClosed):
-                async for _ in channel:
-                    pass
+                async for message in channel:
+                    self._hear(message)
 
         self._tasks.append(asyncio.create_task(listen()))
 
@@ -92,6 +92,9 @@ class Learner:
             async for frame in self._viser:
                 if isinstance(frame, bytes):
                     self._look(frame, perf_counter())
+
+    def _hear(self, message: str | bytes) -> None:
+        """Take what the channel says."""
 
     def _look(self, frame: bytes, now: float) -> None:
         for message in decode_frame(frame):

@@ -71,6 +71,8 @@ class Replicas:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        for server in self.servers:
+            server.send_end()  # they end beside each other
         self._stack.__exit__(kind, error, trace)
 
     def statuses(self) -> bool:

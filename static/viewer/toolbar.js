@@ -18,6 +18,7 @@ export class Toolbar {
       "take-home": () => this.takeHome.open(),
       present: () => live.present(),
       keys: showKeys,
+      more: unfold,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.look("home"),
@@ -66,6 +67,15 @@ export class Toolbar {
       this.words.notify("⚠ The script can’t be had just now. Try again.");
     }
   }
+}
+
+// What is seldom wanted; at the foot of the column it is scrolled into sight.
+function unfold(button) {
+  const rest = document.getElementById(button.getAttribute("aria-controls"));
+  rest.hidden = !rest.hidden;
+  button.ariaExpanded = String(!rest.hidden);
+  const below = rest.getBoundingClientRect().bottom - column.getBoundingClientRect().bottom;
+  if (below > 0) column.scrollTop += below;
 }
 
 // A picture covers the scene, or goes back to its place; it stays live. Two that stand side by side do so together.

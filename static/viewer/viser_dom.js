@@ -14,7 +14,8 @@ let viewer = null; // viser's own state, once it is there
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
-// `looked` hears of each view from which the scene is seen, `blind` that the browser draws no 3D.
+// `looked` hears of each view from which the scene is seen, and says whether the server needn't; `blind` hears that the
+// browser draws no 3D.
 export function prepare(view, looked, blind) {
   const search = new Query({
     websocket: `${sim.socket}?viewer=${sim.viewer}`,
@@ -144,12 +145,21 @@ function sharpness(mutable) {
   };
 }
 
+// From where the scene is looked at: the viewpoint x, y, z, and the place that it looks at.
+export function lookFrom([x, y, z, u, v, w]) {
+  if (!viewer) return;
+  show([
+    { type: "SetCameraPositionMessage", position: [x, y, z], initial: false },
+    { type: "SetCameraLookAtMessage", look_at: [u, v, w], initial: false },
+  ]);
+}
+
 // What viser tells the server of its camera tells us from where the scene is looked at.
 function watchCamera(mutable, looked) {
   let send = mutable.sendMessage;
   const watched = (message) => {
-    if (message.type === "ViewerCameraMessage") looked([...message.position, ...message.look_at]);
-    send(message);
+    const kept = message.type === "ViewerCameraMessage" && looked([...message.position, ...message.look_at]);
+    if (!kept) send(message);
   };
   Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
 }
