@@ -15,11 +15,12 @@ ENDINGS = (".yaml", ".yml", ".json", ".xml", ".txt")
 
 
 class Found(TypedDict):
-    """One camera: fx, fy, cx, cy; the size of its pictures, if that is said; its pose by rows."""
+    """One camera: fx, fy, cx, cy; the size of its pictures, if that is said; whether it has distortion; its pose."""
 
     name: str
     lens: list[float]
     size: list[int]
+    distorted: bool
     pose: list[list[float]]
 
 
@@ -33,7 +34,13 @@ def read(text: str) -> list[Found]:
         )
     lenses = [_lens(each) for each in found]
     return [
-        {"name": each.name, "lens": lens, "size": _size(each), "pose": pose.tolist()}
+        {
+            "name": each.name,
+            "lens": lens,
+            "size": _size(each),
+            "distorted": any(each.distortion),
+            "pose": pose.tolist(),
+        }
         for each, lens, pose in zip(found, lenses, poses(found), strict=True)
     ]
 
@@ -59,11 +66,13 @@ def calibrated(left: Found, right: Found) -> dict[str, Any]:
 
 def taken(found: list[Found], pair: tuple[int, int], sizes: tuple[Size, Size], *, said: bool) -> str:
     """Which cameras were taken, by their numbers from 1, and of which pictures; or that their size wasn't `said`."""
-    left, right = (found[k - 1]["name"] for k in pair)
+    left, right = (found[k - 1] for k in pair)
     seen = " and ".join(f"{width} × {height}" for width, height in sizes)
     guessed = "" if said else ", if the principal points are in their middle: the text doesn’t say how large they are"
     more = f"; for others of its {len(found)}, choose them and take it again" if len(found) > 2 else ""
-    return f"Taken: {left} on the left and {right} on the right{more}. Their pictures have {seen} pixels{guessed}."
+    free = " Pixels are those after distortion was taken out." if left["distorted"] or right["distorted"] else ""
+    names = f"{left['name']} on the left and {right['name']} on the right"
+    return f"Taken: {names}{more}. Their pictures have {seen} pixels{guessed}.{free}"
 
 
 def _lens(each: Written) -> list[float]:
