@@ -16,7 +16,7 @@ from geometry.epipolar import sampson_distance
 from geometry.triangulation import triangulate_midpoint, triangulate_optimal
 from sims.kit import stereo_text
 from sims.kit.calibration import cameras
-from sims.kit.readout import figure, quantity
+from sims.kit.readout import quantity
 from sims.kit.stereo import LARGEST, length
 from sims.kit.stereo_text import Found, calibrated, chosen, taken
 from sims.triangulation.holding import held_point, seen
@@ -122,9 +122,9 @@ def unit(p: TriangulationParams) -> str:
     metres = _metres(long)
     if metres is None or not _alike([metres, p.baseline]):
         apart = quantity(p.baseline, "m", 2)
-        return f"T is {figure(long)} long in its unit; here the cameras are {apart} apart, and lengths grow with that."
+        return f"T is {long:.5g} long in its unit; here the cameras are {apart} apart, and lengths grow with that."
     name = "metres" if _alike([metres, long]) else "millimetres"
-    return f"T, which is {figure(long)} long, is taken to be in {name}."
+    return f"T, which is {long:.5g} long, is taken to be in {name}."
 
 
 def middlebury(p: TriangulationParams) -> dict[str, Any]:

@@ -126,6 +126,9 @@ class TriangulationParams(Params):
             return 200.0, NARROWEST * max(self.width, WIDTH)
         return super().bounds(name)
 
+    def label(self, name: str) -> str:
+        return "Moving b keeps" if name == "hold" and self.pair else super().label(name)
+
     def ranges(self, name: str) -> Sequence[tuple[float, float]]:
         if name in ("left_uv", "right_uv"):
             return tuple((0.0, end - 1.0) for end in self.sizes[name == "right_uv"])

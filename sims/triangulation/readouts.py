@@ -37,7 +37,7 @@ METHODS, EQUATIONS = "The three methods", "The equations of DLT"
 BY_PICTURE = ("left", "left", "right", "right")
 
 
-RECTIFIED = "Not rectified: Z = f b / d doesn’t hold here, and disparity means nothing. Both rays give the point."
+RECTIFIED = "Not rectified: Z = f b / d doesn’t hold here. The point follows from both rays alone."
 
 
 def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
@@ -81,13 +81,11 @@ def _own(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
     if p.pair is None:
         return
     yield Note(
-        f"Your own pair: the right camera is turned by {quantity(turned(p.pair), '°', 2)} against the left one."
-        f" {unit(p)} Both are turned by half of that from where they look in parallel, and stand 1 m above the ground."
-        " Pixels are those of your pictures, once free of distortion."
+        f"The right camera is turned by {quantity(turned(p.pair), '°', 2)} against the left one. {unit(p)} In the scene"
+        " each is turned by half of that, to opposite sides. Pixels are your pictures’, once free of distortion."
     )
     if s.point_left is not None and s.depth is not None and s.depth < VERY_FAR:
-        words = "The point in the left camera’s axes, as OpenCV has it: x right, y down, z forward"
-        yield Formula(words, symbol("X", "L"), row(s.point_left.tolist()), "m")
+        yield Formula("The point in the left camera’s axes", symbol("X", "L"), row(s.point_left.tolist()), "m")
     for side, K in (("left", s.K_left), ("right", s.K_right)):
         yield Formula(
             f"Camera matrix of the {side} camera", symbol("K", side[0].upper()), mathml(K, 2), copy=spelled(K)

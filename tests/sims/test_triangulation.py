@@ -159,6 +159,7 @@ def test_every_state_has_an_answer_without_nan(p: TriangulationParams) -> None:
     values = jsonable(solution)
     assert values["point"] is None or all(v is not None for v in values["point"])
     for line, pixel in ((solution.line_left, solution.measured_left), (solution.line_right, solution.measured_right)):
+        assert line is not None
         assert np.linalg.norm(line[:2]) == pytest.approx(1.0)
         assert abs(line[0]) < 1e-9, "a parallel rig has horizontal epipolar lines"
         assert pixel is not None
@@ -166,6 +167,8 @@ def test_every_state_has_an_answer_without_nan(p: TriangulationParams) -> None:
 
 def test_epipolar_line_goes_through_the_row_of_the_other_point() -> None:
     solution = solve(START.changed({"left_uv": (400, 100), "right_uv": (300, 180)}))
+    assert solution.line_left is not None
+    assert solution.line_right is not None
     assert abs(solution.line_left @ (17.0, 180.0, 1.0)) < 1e-9
     assert abs(solution.line_right @ (17.0, 100.0, 1.0)) < 1e-9
 
@@ -853,6 +856,7 @@ def test_a_real_rig_looks_at_the_same_point_and_is_as_sure_as_its_numbers_say(ru
     p = START.changed(run(START))
     solution = solve(p)
     np.testing.assert_allclose(solution.point, (0.3, 4.0, 1.2), rtol=0, atol=1e-9)  # type: ignore[arg-type]
+    assert solution.disparity is not None
     assert solution.depth_from_disparity == pytest.approx(p.focal * p.baseline / (solution.disparity + p.doffs))
     assert solution.depth_sigma == pytest.approx(math.sqrt(2.0) * 16.0 / (p.focal * p.baseline))
     assert p.before == (0.6, 600.0, 0.0), "the curve of the rig before is kept"
