@@ -87,7 +87,7 @@ SIM = Sim(
     states={
         "toe-in pair": TOE_IN,
         "toe-in pair, noise": {**TOE_IN, "noise": 1.0, "seed": 3},
-        "toe-in pair, rays miss": {**TOE_IN, "right_uv": (560.0, 470.0), "method": "optimal"},
+        "toe-in pair, rays miss": {**TOE_IN, "right_uv": (1290.0, 480.0), "method": "optimal"},
         "toe-in pair, behind": {**TOE_IN, "left_uv": (100.0, 540.0), "right_uv": (1200.0, 400.0)},
         "rays miss": {"right_uv": (320, 222), "method": "optimal"},
         "noise": {"noise": 1.0, "seed": 3},

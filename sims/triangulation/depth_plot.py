@@ -1,6 +1,6 @@
 """The plot of depth uncertainty against depth: σ_Z = √2 σ Z² / (f b) in a parallel rig.
 
-Of cameras that are turned, it is that of the points on the left pixel's ray, with Z before the left camera.
+Of cameras that are turned, it is that of the places on the left camera's line to the point, with Z before that camera.
 
 Its axes stay while a hand changes baseline, focal length or noise: they are those of the curve before the change, which
 is seen too. Depths go up to a power of ten, so that they stay while the point is dragged.
@@ -19,7 +19,7 @@ from sims.kit.pane import Pane
 from sims.kit.plot import Plot, room
 from sims.kit.readout import quantity
 from sims.kit.stereo import Own, Size
-from sims.kit.types import Pixel
+from sims.kit.types import Pixel, Place
 from sims.triangulation.params import TriangulationParams
 from sims.triangulation.rig import turned
 from sims.triangulation.solution import TriangulationSolution, sigma_of
@@ -32,8 +32,10 @@ SAMPLES = 48
 """Depths at which the curve of turned cameras is worked out."""
 Curve = tuple[float, float, float]
 """Baseline in metres, focal length in pixels, noise in pixels."""
-Seen = tuple[Own, tuple[Size, Size], Pixel]
-"""Turned cameras with the sizes of their pictures, and the left pixel; their focal lengths are their own."""
+Sight = tuple[Own, tuple[Size, Size], Pixel | Place]
+"""Turned cameras with the sizes of their pictures, and what the left one looks at: a pixel, or a place in the world.
+
+What stays while the baseline changes: so that is the line along which it would be before and after."""
 
 
 def reach(depth: float) -> float:
@@ -47,19 +49,42 @@ def within(depth: float, now: float) -> float:
     return min(max(depth, (0.1 + INSIDE) * end), (1.0 - INSIDE) * end)
 
 
-def seen(p: TriangulationParams, left: Pixel) -> Seen | None:
+def sight(p: TriangulationParams, s: TriangulationSolution) -> Sight | None:
     """What else the curve depends on: nothing in a parallel rig."""
-    return None if p.pair is None else (p.pair, p.sizes, left)
+    if p.pair is None:
+        return None
+    if s.point is None or p.hold == "pixels":
+        return p.pair, p.sizes, s.measured_left
+    x, y, z = s.point.tolist()
+    return p.pair, p.sizes, (x, y, z)
 
 
-def sigmas(depths: Array, curve: Curve, own: Seen | None) -> Array:
-    """Standard deviations (n,) of depths (n,), in metres; NaN where not both cameras see the point."""
+def sigmas(depths: Array, curve: Curve, own: Sight | None) -> Array:
+    """Standard deviations (n,) of depths (n,), in metres; NaN for what isn't in front of both cameras."""
     if own is None:
         return depth_sigma(depths, *curve)
-    pair, sizes, (u, v) = own
-    cameras = turned(pair, sizes, curve[0])
-    forward, along = cameras.left.R[2], cameras.left.back_projection @ [u, v, 1.0]
-    points = cameras.left.center + depths[:, None] * along
+    pair, sizes, at = own
+    left = turned(pair, sizes, curve[0]).left
+    ahead = left.back_projection @ [*at, 1.0] if len(at) == 2 else np.array(at) - left.center
+    with np.errstate(all="ignore"):  # at a place beside the camera nothing is ahead
+        along = ahead / (left.R[2] @ ahead)
+        return _sigmas(left.center + depths[:, None] * along, curve, own)
+
+
+def sigma_before(p: TriangulationParams, s: TriangulationSolution) -> float:
+    """The standard deviation of the depth that the point had before the change."""
+    assert p.before is not None
+    b, f, noise = p.before
+    curve, own = (b, f, sigma_of(noise)), sight(p, s)
+    if own is None:
+        return float(depth_sigma(s.depth or 0.0, *curve))
+    return float(_sigmas(np.array([s.point]), curve, own).item(0))
+
+
+def _sigmas(points: Array, curve: Curve, own: Sight) -> Array:
+    """Those of points (n, 3) that turned cameras see."""
+    cameras = turned(own[0], own[1], curve[0])
+    forward = cameras.left.R[2]
     C = covariance((cameras.left, cameras.right), points, curve[2])
     return np.asarray(np.sqrt(forward @ C @ forward))
 
@@ -68,7 +93,7 @@ def plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
     """The curve of the state with its point, which can be dragged along the depth."""
     now = p.baseline, p.focal, s.sigma_px
     before = now if p.before is None else (p.before[0], p.before[1], sigma_of(p.before[2]))
-    own = seen(p, s.measured_left)
+    own = sight(p, s)
     noise = f"at {quantity(s.sigma_px, 'px', 2)} noise"
     if s.depth is None or s.depth_sigma is None or s.vague:
         return _curves(now, before, reach(NO_DEPTH), own).pane(noise)
@@ -80,7 +105,7 @@ def plot(p: TriangulationParams, s: TriangulationSolution) -> Pane:
 
 
 @lru_cache(maxsize=128)
-def _curves(now: Curve, before: Curve, x_max: float, own: Seen | None) -> Plot:
+def _curves(now: Curve, before: Curve, x_max: float, own: Sight | None) -> Plot:
     """The curve now, and that before the change; without one, those of half and twice the baseline."""
     end = _sigma(before, x_max, own)
     y_max = room(end, 1.0)
@@ -99,7 +124,7 @@ def _curves(now: Curve, before: Curve, x_max: float, own: Seen | None) -> Plot:
     return drawn
 
 
-def _points(curve: Curve, x_max: float, y_max: float, own: Seen | None) -> list[tuple[float, float]]:
+def _points(curve: Curve, x_max: float, y_max: float, own: Sight | None) -> list[tuple[float, float]]:
     """The curve from zero to where it leaves the plot."""
     if own is None:
         end = min(x_max, math.sqrt(y_max / _sigma(curve, 1.0, None)))
@@ -114,7 +139,7 @@ def _points(curve: Curve, x_max: float, y_max: float, own: Seen | None) -> list[
     return [(0.0, 0.0), *points]
 
 
-def _sigma(curve: Curve, depth: float, own: Seen | None) -> float:
+def _sigma(curve: Curve, depth: float, own: Sight | None) -> float:
     """That of one depth; 0 where it doesn't exist."""
     found = sigmas(np.array([depth]), curve, own).item(0)
     return found if math.isfinite(found) else 0.0
