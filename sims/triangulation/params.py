@@ -129,6 +129,11 @@ class TriangulationParams(Params):
     def label(self, name: str) -> str:
         return "Moving b keeps" if name == "hold" and self.pair else super().label(name)
 
+    def about(self, name: str) -> str:
+        if self.pair and name in OF_RIG - {"baseline"}:
+            return "This says nothing of a stereo pair of your own: each of its cameras has its own"
+        return super().about(name)
+
     def ranges(self, name: str) -> Sequence[tuple[float, float]]:
         if name in ("left_uv", "right_uv"):
             return tuple((0.0, end - 1.0) for end in self.sizes[name == "right_uv"])
