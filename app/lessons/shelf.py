@@ -43,6 +43,7 @@ class Shelf:
         self._given = given
         self._of_sims: dict[str, Lesson | None] = {}
         self._turns = {sim.slug: Lock() for sim in sims}  # a page may ask while all are loaded ahead
+        self._closed = False
         self.own: dict[str, Lesson] = {}
         """Those of the folder, by their names."""
         self.broken: dict[str, LessonError] = {}
@@ -69,7 +70,17 @@ class Shelf:
 
     def loading(self) -> list[Callable[[], object]]:
         """What loads the lessons of all sims, one by one, so that nobody waits for one."""
-        return [partial(self.of_sim, sim) for sim in self._sims]
+        return [partial(self._load, sim) for sim in self._sims]
+
+    def close(self) -> None:
+        """The server ends: what is loaded ahead is left as it is after the section that is being written."""
+        self._closed = True
+
+    def _load(self, sim: AnySim) -> None:
+        lesson = None if self._closed else self.begun(sim)
+        for _ in lesson.each() if lesson else ():
+            if self._closed:
+                break
 
     @cached_property
     def outlines(self) -> dict[str, Outline]:

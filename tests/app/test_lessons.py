@@ -237,6 +237,22 @@ def test_each_section_is_written_when_it_is_asked_for(tmp_path: Path) -> None:
     assert solved == [10, 20], "each state is solved once"
 
 
+def test_loading_ahead_ends_with_the_section_at_which_the_server_ends() -> None:
+    sim, solved = by_slug("gimbal-lock"), list[float]()
+    assert sim is not None
+
+    def solve(params: Any) -> Any:
+        if params.pitch:
+            solved.append(params.pitch)
+            shelf.close()
+        return sim.solve(params)
+
+    shelf = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
+    for piece in shelf.loading():
+        piece()
+    assert solved == [30], "the second step of the first lesson"
+
+
 def test_a_page_is_sent_section_by_section() -> None:
     pulled = list[int]()
 
