@@ -310,21 +310,24 @@ def test_text_becomes_what_the_page_works_with(written: Callable[..., Lesson]) -
 
 
 @pytest.mark.parametrize(
-    ("info", "choices", "answer"),
+    ("info", "choices", "answer", "said"),
     [
-        ("dof at ?pitch=90", "- `3`\n- `2` two\n", 2),
-        ("dof from ? to ?pitch=90", "- `smaller` less\n- `same` as before\n", "smaller"),
-        ("conditioning within 0.05 at ?pitch=60", "", 0.5),
-        ("pitch set within 2 at ?pitch=45", "", 45),
+        ("dof at ?pitch=90", "- `3`\n- `2` two\n", 2, ""),
+        ("dof from ? to ?pitch=90", "- `smaller` less\n- `same` as before\n", "smaller", ""),
+        ("conditioning within 0.05 at ?pitch=60", "", 0.5, "0.500"),
+        ("conditioning within 3 at ?pitch=60", "", 0.5, "0.5"),
+        ("pitch set within 2 at ?pitch=45", "", 45, "45°"),
     ],
 )
 def test_the_answer_of_a_prediction_is_worked_out(
-    written: Callable[..., Lesson], info: str, choices: str, answer: float | str
+    written: Callable[..., Lesson], info: str, choices: str, answer: float | str, said: str
 ) -> None:
     lesson = written(f"::: predict {info}\nWhat?\n\n{choices}\n---\nSo.\n:::\n")
     asked = re.search(r'data-predict="([^"]*)"', lesson.sections[0].html)
     assert asked is not None
-    assert json.loads(unescape(asked[1]))["answer"] == (pytest.approx(answer) if isinstance(answer, float) else answer)
+    data = json.loads(unescape(asked[1]))
+    assert data["answer"] == (pytest.approx(answer) if isinstance(answer, float) else answer)
+    assert data["said"] == said
 
 
 # ---- the folder of a school
