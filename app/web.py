@@ -72,6 +72,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         services.sessions.begin_sweeping()
         yield
+        services.lessons.close()
         await services.sessions.close()
         services.classes.close()
         services.answers.close()

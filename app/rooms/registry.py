@@ -174,5 +174,6 @@ class Sessions:
         child.stop()
         self._closed = True
         self.aside.shutdown(wait=False, cancel_futures=True)
-        self._ahead.shutdown(wait=False, cancel_futures=True)
+        # A piece that has begun is waited for here: the interpreter would wait as well, but refuse it its threads.
+        await asyncio.to_thread(self._ahead.shutdown, cancel_futures=True)
         self._solver.close()
