@@ -13,7 +13,7 @@ from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import Sim
-from sims.kit.types import Place, Vector
+from sims.kit.types import Vector
 from sims.kit.view import View
 
 FARTHEST = 1e4
@@ -104,6 +104,6 @@ class Viewer:
         if not self.watching:
             self._host.click(name, ray)
 
-    def _dragged(self, name: str, place: Place) -> None:
+    def _dragged(self, name: str, place: tuple[float, ...]) -> None:
         if not self.watching:
             self._host.drag(name, place)

@@ -18,17 +18,20 @@ STRIDE = math.radians(60.0)
 """How far round a circle one pull leads at most: a node doesn't jump to the circle's far side."""
 
 
-def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None) -> None:
+def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None, body: Any = None) -> None:
     """Tell `drag` the place (world, metres) to which the pointer pulls a node of viser's.
 
     The node moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One
-    with a path goes where that leads.
+    with a path goes where that leads. Where a `body` is given it is that which is taken, and moves the node, unless that
+    is hidden.
     """
     offset = np.zeros(3)
     origin = np.zeros(3)
 
     def moved(event: Any, straight: bool) -> None:
         nonlocal offset, origin
+        if body is not None and not handle.visible:
+            return
         if event.phase == "start":
             origin = np.array(handle.position)
             offset = origin - np.array(event.start_position)
@@ -41,7 +44,7 @@ def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None)
             target = origin + np.where(np.arange(3) == keep, pull, 0.0)
         drag((float(target[0]), float(target[1]), float(target[2])))
 
-    _on_drag(handle, moved)
+    _on_drag(handle if body is None else body, moved)
 
 
 def listen_round(
@@ -68,6 +71,31 @@ def listen_round(
     _on_drag(handle, moved)
 
 
+def listen_anywhere(
+    handle: Any, drag: Callable[[tuple[float, ...]], None], eye: Callable[[], Vector],
+    turned: Callable[[], npt.NDArray[np.float64]], least: float,
+) -> None:  # fmt: skip
+    """The same for a body that turns about the world's origin every way: what was taken stays under the pointer.
+
+    `drag` is told six numbers: the spot that was taken, in the frame of the body, whose orientation `turned` (3, 3)
+    knows; and where in the world it is pulled to. Nearer to the middle than `least` (metres), where a small pull would
+    turn the body a lot, a ball of that radius is taken in its place.
+    """
+    spot, radius, near = np.zeros(3), least, True
+
+    def moved(event: Any, straight: bool) -> None:
+        nonlocal spot, radius, near
+        if event.phase == "start":
+            at, viewer = np.array(event.start_position), np.asarray(eye(), dtype=float)
+            radius = max(math.sqrt(at @ at), least)
+            near = bool(at @ viewer >= at @ at)
+            spot = turned().T @ on_sphere(radius, viewer, at, near=near)
+        place = on_sphere(radius, eye(), event.end_position, near=near)
+        drag((*spot.tolist(), *place.tolist()))
+
+    _on_drag(handle, moved)
+
+
 def _on_drag(handle: Any, moved: Callable[[Any, bool], None]) -> None:
     """Tell `moved` of each drag event, and whether Shift is held."""
 
@@ -78,6 +106,22 @@ def _on_drag(handle: Any, moved: Callable[[Any, bool], None]) -> None:
     @handle.on_drag("left", modifier="shift")  # type: ignore[untyped-decorator]
     async def _(event: Any) -> None:
         moved(event, True)
+
+
+def on_sphere(radius: float, eye: Vector, pulled: Vector, *, near: bool) -> npt.NDArray[np.float64]:
+    """Where the ray from the eye through `pulled` meets a sphere about the origin, on its near or its far side.
+
+    One that passes by it leads to the sphere's rim, as seen from there.
+    """
+    start = np.asarray(eye, dtype=float)
+    ray = np.subtract(pulled, start)
+    ray /= math.sqrt(ray @ ray) or 1.0
+    closest = start - ray * (ray @ start)
+    past = math.sqrt(closest @ closest)
+    if past >= radius:
+        return np.asarray(closest * (radius / past))
+    deep = math.sqrt(radius * radius - past * past)
+    return np.asarray(closest + ray * (-deep if near else deep))
 
 
 def on_circle(at: Vector, axis: Vector, eye: Vector, pulled: Vector) -> Place:
