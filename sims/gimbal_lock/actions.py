@@ -29,7 +29,7 @@ READ = 1.8
 ON_AXIS = 1e-6
 """Metres from its axis within which a place doesn't say how a ring is turned."""
 STIFF, ROUNDS = 0.1, 8
-"""How far a pull must lead, in parts of its lever, before a ring that can hardly follow gives way; and steps of that."""
+"""Below which effect on the held spot, in parts of its lever, a ring is left where it is; and steps to the place."""
 LINED_UP = "At lock, the outer and the inner ring turn about one and the same line."
 
 
@@ -61,9 +61,9 @@ def _about(ring: Ring, place: Vector) -> tuple[float, float]:
 
 
 def pull(p: GimbalParams, held: tuple[float, ...]) -> Mapping[str, Any]:
-    """A spot of the aircraft, in its own frame, was pulled to a place in the world: the rings turn as little as they need.
+    """A spot of the aircraft, in its own frame, was pulled to a place in the world: the rings turn it there.
 
-    They bring it as near as they can from where they are. At lock a pull about the lost axis turns none of them.
+    They turn as little as they need, and bring it as near as they can: at lock a pull about the lost axis turns none.
     """
     spot, place = np.reshape(held, (2, 3))
     turns = np.radians(p.angles)

@@ -22,8 +22,8 @@ def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None,
     """Tell `drag` the place (world, metres) to which the pointer pulls a node of viser's.
 
     The node moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One
-    with a path goes where that leads. Where a `body` is given it is that which is taken, and moves the node, unless that
-    is hidden.
+    with a path goes where that leads. A `body` that is given is taken in the node's place, unless that is hidden, and
+    moves it.
     """
     offset = np.zeros(3)
     origin = np.zeros(3)
