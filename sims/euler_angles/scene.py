@@ -19,7 +19,7 @@ from sims.kit.types import Place, Vector
 TIPS = (0.92, 0.94)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
-LEAST = 0.4
+LEAST = 0.6
 """Metres from the middle of the aircraft within which it is turned as a ball of that radius."""
 REACHED = 0.01
 """Degrees from the aircraft within which the target hides in it."""

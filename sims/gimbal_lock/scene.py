@@ -21,7 +21,7 @@ from sims.kit.types import Vector
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
-LEAST = 0.3
+LEAST = 0.45
 """Metres from its middle within which it is turned as a ball of that radius."""
 STROKES = {"length": ((0.98, 0.0, 0.0), (-0.88, 0.0, 0.0)), "span": ((-0.1, 0.98, 0.0), (-0.1, -0.98, 0.0))}
 """Dashed through the ghost of the aircraft, from nose to tail and from tip to tip."""

@@ -18,7 +18,7 @@ from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
 """Radius of the angle's arc, and how far up the axis it is, in metres: outside the unit sphere."""
-LEAST = 0.4
+LEAST = 0.6
 """Metres from the object's middle within which it is turned as a ball of that radius."""
 LAP = 0.12
 """How far below the arc the circle of the first whole turn is, once the angle is in its second."""
