@@ -7,6 +7,7 @@ const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
 const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
 const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
 let viewer = null; // viser's own state, once it is there
+let eye = null; // what viser's camera last said of itself
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
@@ -115,10 +116,28 @@ function drawLess(mutable) {
 function watchCamera(mutable, looked) {
   let send = mutable.sendMessage;
   const watched = (message) => {
-    if (message.type === "ViewerCameraMessage") looked([...message.position, ...message.look_at]);
+    if (message.type === "ViewerCameraMessage") {
+      eye = message;
+      looked([...message.position, ...message.look_at]);
+    }
     send(message);
   };
   Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
+}
+
+// The ray through a place on the page, where the scene is: origin, then direction; null before there is a camera.
+export function rayThrough({ clientX, clientY }) {
+  if (!eye) return null;
+  const { left, top, width, height } = sceneCanvas().getBoundingClientRect();
+  const half = Math.tan(eye.fov / 2) * (2 / height);
+  const [x, y] = [(clientX - left - width / 2) * half, (clientY - top - height / 2) * half];
+  const [qw, qx, qy, qz] = eye.wxyz; // right, down and forward of the camera in the world
+  return [
+    ...eye.position,
+    (1 - 2 * (qy * qy + qz * qz)) * x + 2 * (qx * qy - qw * qz) * y + 2 * (qx * qz + qw * qy),
+    2 * (qx * qy + qw * qz) * x + (1 - 2 * (qx * qx + qz * qz)) * y + 2 * (qy * qz - qw * qx),
+    2 * (qx * qz - qw * qy) * x + 2 * (qy * qz + qw * qx) * y + 1 - 2 * (qx * qx + qy * qy),
+  ];
 }
 
 // Which version of the state the scene shows; undefined before it shows any.
