@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -17,7 +18,7 @@ from sims.kit.readout import figure, quantity
 from sims.kit.scene.nodes import Label
 from sims.kit.scene.pieces import arc_pieces
 from sims.kit.scene.stage import Stage
-from sims.kit.types import Vector
+from sims.kit.types import ORIGIN, Line, Vector
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
@@ -85,7 +86,7 @@ class GimbalScene:
         axes = [partial(self._axis, k) for k in range(3)]
         self.grips = [stage.grip(ring.grip, GRIP, axis=axis) for ring, axis in zip(RINGS, axes, strict=True)]
         for ring, body, grip, axis in zip(RINGS, bodies, self.grips, axes, strict=True):
-            stage.turned_by(body, ring.grip, grip, axis)
+            stage.turned_by(body, ring.grip, grip, partial(_through_middle, axis))
         self.lamps = Lamps(stage)
 
     def _axis(self, k: int) -> Vector:
@@ -118,6 +119,10 @@ class GimbalScene:
         if s.ghost is not None:
             self.ghost.pose(s.ghost.wxyz)
             self.ghost_label.text(f"ghost, {quantity(s.ghost.angle, '°', 0)} away")
+
+
+def _through_middle(axis: Callable[[], Vector]) -> Line:
+    return ORIGIN, axis()
 
 
 class Reach:

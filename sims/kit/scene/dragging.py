@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.rotations import axis_angle_to_matrix
-from sims.kit.types import Place, Vector
+from sims.kit.types import Line, Place, Vector
 
 Path = Callable[[Place, Place], Place]
 """From where a node is and where it is pulled to where it may go."""
@@ -48,11 +48,11 @@ def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None,
 
 
 def listen_round(
-    handle: Any, drag: Callable[[Place], None], grip: Any, axis: Callable[[], Vector], eye: Callable[[], Vector]
+    handle: Any, drag: Callable[[Place], None], grip: Any, line: Callable[[], Line | None], eye: Callable[[], Vector]
 ) -> None:
-    """The same for a body that turns about a unit axis through the world's origin, wherever it is taken.
+    """The same for a body that turns about a line, wherever it is taken; without a line it is carried along.
 
-    `drag` is told the place to which its grip is turned, another node.
+    `drag` is told the place to which its grip is turned, or carried: another node, which must be seen.
     """
     spot, taken, held = np.zeros(3), np.zeros(3), np.zeros(3)
 
@@ -61,11 +61,17 @@ def listen_round(
         if event.phase == "start":
             spot = taken = np.array(event.start_position)
             held = np.array(grip.position)
-        normal = np.asarray(axis(), dtype=float)
-        spot = np.array(on_circle(spot, normal, eye(), event.end_position))
-        before, now = (place - normal * (normal @ place) for place in (taken, spot))
-        angle = math.atan2(float(normal @ np.cross(before, now)), float(before @ now))
-        x, y, z = (axis_angle_to_matrix(normal, angle) @ held).tolist()
+        if not grip.visible:
+            return
+        about = line()
+        if about is None:
+            x, y, z = (held + np.subtract(event.end_position, taken)).tolist()
+        else:
+            middle, normal = (np.asarray(v, dtype=float) for v in about)
+            spot = middle + on_circle(spot - middle, normal, eye() - middle, np.subtract(event.end_position, middle))
+            before, now = (v - normal * (normal @ v) for v in (taken - middle, spot - middle))
+            angle = math.atan2(float(normal @ np.cross(before, now)), float(before @ now))
+            x, y, z = (middle + axis_angle_to_matrix(normal, angle) @ (held - middle)).tolist()
         drag((x, y, z))
 
     _on_drag(handle, moved)

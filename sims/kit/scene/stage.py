@@ -20,7 +20,7 @@ from sims.kit.scene import bodies, dragging, view
 from sims.kit.scene.lights import light
 from sims.kit.scene.nodes import HEAD_LENGTH, HEAD_RADIUS, Arrows, Cloud, Grip, Label, Lines, Node, Solid, Strokes
 from sims.kit.scene.pieces import Dash, dashes
-from sims.kit.types import Place, Vector
+from sims.kit.types import Line, Place, Vector
 
 NO_LINE = np.zeros((2, 3))
 NO_ARROW = np.zeros((1, 2, 3))
@@ -222,10 +222,10 @@ class Stage:
         dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return Grip(ball.handle, rings)
 
-    def turned_by(self, body: Node, name: str, grip: Grip, axis: Callable[[], Vector]) -> None:
-        """Have a body that the grip of that name turns turn by itself too, wherever it is taken."""
+    def turned_by(self, body: Node, name: str, grip: Grip, line: Callable[[], Line | None]) -> None:
+        """Have a body that the grip of that name turns turn by itself too, wherever it is taken; see `listen_round`."""
         eye = partial(getattr, self.client.camera, "position")
-        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, axis, eye)
+        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, line, eye)
 
     def carried_by(self, parts: Sequence[Node], name: str, grip: Grip) -> None:
         """Have the parts of a body that the grip of that name moves move by themselves too, wherever they are taken."""
