@@ -13,6 +13,7 @@ import { Pace } from "./pace.js";
 import { sim } from "./page.js";
 import { Parts } from "./parts.js";
 import { Paste } from "./paste.js";
+import { Pointer } from "./pointer.js";
 import { Strip } from "./strip.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
@@ -37,6 +38,7 @@ class Page {
     this.controls = new Controls(this.channel, this.pace);
     this.handles = new Handles(this.pace, this.highlight);
     this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.change({}));
+    this.pointer = new Pointer(this.channel);
     this.files = new Files(this.words);
     this.host = new Host(this.channel, this.address, this.highlight);
     this.height = new Height(this.host);
@@ -55,6 +57,7 @@ class Page {
       room: (message) => this.live.hear(message),
       led: (message) => this.lead.hear(message),
       point: ({ name }) => this.highlight.others(name),
+      over: () => this.pointer.pace.answered(),
       error: (message) => this.fail(message),
       work: (message) => this.work.show(message),
     };
@@ -79,6 +82,7 @@ class Page {
   lost(code, reason) {
     this.trouble.lost(code, reason);
     this.pace.answered();
+    this.pointer.pace.answered();
     this.work.show({ text: "" });
   }
 

@@ -11,6 +11,7 @@ const SLOW = 40;
 const QUICK = 20; // milliseconds with which it gets the whole one back; a coarser frame has half the pixels
 const SAMPLES = 16; // frames between two such decisions
 let viewer = null; // viser's own state, once it is there
+let eye = null; // what viser's camera last said of itself
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
@@ -158,10 +159,29 @@ export function lookFrom([x, y, z, u, v, w]) {
 function watchCamera(mutable, looked) {
   let send = mutable.sendMessage;
   const watched = (message) => {
-    const kept = message.type === "ViewerCameraMessage" && looked([...message.position, ...message.look_at]);
-    if (!kept) send(message);
+    if (message.type === "ViewerCameraMessage") {
+      eye = message;
+      if (looked([...message.position, ...message.look_at])) return;
+    }
+    send(message);
   };
   Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
+}
+
+// The ray through a place on the page, where the scene is: origin, then direction; null before there is a camera.
+export function rayThrough({ clientX, clientY }) {
+  const canvas = sceneCanvas();
+  if (!eye || !canvas) return null;
+  const { left, top, width, height } = canvas.getBoundingClientRect();
+  const half = Math.tan(eye.fov / 2) * (2 / height);
+  const [x, y] = [(clientX - left - width / 2) * half, (clientY - top - height / 2) * half];
+  const [qw, qx, qy, qz] = eye.wxyz; // right, down and forward of the camera in the world
+  return [
+    ...eye.position,
+    (1 - 2 * (qy * qy + qz * qz)) * x + 2 * (qx * qy - qw * qz) * y + 2 * (qx * qz + qw * qy),
+    2 * (qx * qy + qw * qz) * x + (1 - 2 * (qx * qx + qz * qz)) * y + 2 * (qy * qz - qw * qx),
+    2 * (qx * qz - qw * qy) * x + 2 * (qy * qz + qw * qx) * y + 1 - 2 * (qx * qx + qy * qy),
+  ];
 }
 
 // Which version of the state the scene shows; undefined before it shows any.

@@ -21,9 +21,11 @@ from pydantic import ValidationError
 
 from app.rooms import drawing, motion, registry, telling
 from app.rooms.keys import new_key, room_of
+from app.rooms.looking_up import LookingUp
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
+from app.rooms.solver import Solver as Pool
 from app.rooms.solver import workers
 from app.routes.links import controls
 from app.sockets.commands import Commands
@@ -1205,3 +1207,19 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
         await sessions.close()
 
     asyncio.run(asyncio.wait_for(test(), 20))
+
+
+def test_a_pointer_that_passes_takes_the_place_of_no_click() -> None:
+    taken: list[str] = []
+
+    async def test() -> None:
+        pool = Pool()
+        looking_up = LookingUp(pool, asyncio.Lock(), lambda error: taken.append(repr(error)))
+        for kind, name in (("place", "click"), ("pointer", "there"), ("pointer", "here"), ("", "press"), ("", "press")):
+            looking_up.ask(lambda name=name: name, taken.append, kind)  # type: ignore[misc]
+        assert looking_up.task is not None
+        await looking_up.task
+        pool.close()
+
+    run(test)
+    assert taken == ["click", "here", "press", "press"]

@@ -54,6 +54,9 @@ def number(learner: Learner, name: str) -> Locator:
 def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: Learner) -> None:
     page = reader.page
     show, mine = page.get_by_role("button", name="Show this"), page.get_by_role("button", name="Back to mine")
+    box = page.locator("iframe").first.bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] <= DESK["height"], "the sim's lower end isn't in sight as the page opens"
     read(reader, "the-last-degree")
     state(reader, pitch=89, yaw=0)
     expect(show).to_be_hidden()

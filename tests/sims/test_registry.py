@@ -503,7 +503,7 @@ def test_what_can_be_dragged_is_known_and_moves(sim: AnySim) -> None:
     with Rig(sim) as rig:
         for name in rig.model.draggable():
             before = rig.session.params
-            body = name not in sim.handles  # turned wherever it is taken, as its grip is
+            body = name not in sim.handles  # moved wherever it is taken
             x, y, z = (0.5, 0.4, 0.6) if body else rig.model.world_pose(name)[:3, 3].tolist()
             rig.browser.drag(name, (x + 0.05, y + 0.02, z + 0.03), taken=(x, y, z))
             rig.settle()

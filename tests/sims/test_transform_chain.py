@@ -579,6 +579,23 @@ def test_a_joint_is_led_round_and_round_without_a_jump(rig: Rig) -> None:
     assert (p.angles[0], p.angles[2], p.trace) == (30, -30, 2)
 
 
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_a_link_turns_wherever_it_is_taken(rig: Rig, k: int) -> None:
+    """About its joint, by as much as the place that was taken goes round."""
+    rig.show(START)
+    body = "".join(f"/link{n}" for n in range(1, k + 2)) + "/body"
+    joint, normal = solve(START).lines[k] or ((), ())
+    eye = np.asarray(rig.browser.client.camera.position)
+    places = rig.model.points(body)
+    taken = places[np.argmax(np.linalg.norm(places - joint, axis=1))]
+    ways = [Rotation.from_rotvec(math.radians(a) * np.array(normal)).apply(taken - joint) + joint for a in (20, 40)]
+    seen = [tuple((eye + 0.9 * (way - eye)).tolist()) for way in ways]
+    rig.browser.drag(body, *seen, taken=tuple(taken.tolist()))
+    rig.settle()
+    turned = [math.remainder(a - b, 360.0) for a, b in zip(state(rig).angles, START.angles, strict=True)]
+    assert turned == pytest.approx([40.0 * (j == k) for j in range(3)], abs=0.05)
+
+
 def test_a_sliding_joint_is_pulled_along_its_axis(rig: Rig) -> None:
     rig.show(SLIDING)
     x, y, z = held_at(SLIDING, 2)
