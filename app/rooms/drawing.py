@@ -24,6 +24,7 @@ PATIENCE = 0.2
 """Seconds that a solve in the pool goes on for while a newer state waits."""
 LONG, REPORTED_EVERY = 0.4, 0.2
 """Seconds without a drawing from which on pages are told how far the work is, and between two such messages."""
+BROKEN = {"type": "error", "message": "This state can’t be drawn; the server’s log says why.", "errors": []}
 WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 
 
@@ -116,8 +117,7 @@ class Drawing:
                 self._latency.observe(self._drawn_at - asked_at)
                 self._telling.tell_state_soon()
         except Exception:
-            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
-            log.exception("drawing %s failed in the state %s", self.sim.slug, self.solved.query())
+            self._broke()
         finally:
             self.task = None
             if reporting is not None:
@@ -162,8 +162,13 @@ class Drawing:
         try:
             viewer.draw(self.solved, self.solution, self.version)
         except Exception:
-            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
-            log.exception("drawing %s for a viewer failed in the state %s", self.sim.slug, self.solved.query())
+            self._broke()
+
+    def _broke(self) -> None:
+        """Count, log and tell that a state can't be drawn; the session goes on."""
+        metrics.FAILURES.labels(self.sim.slug, "draw").inc()
+        log.exception("drawing %s failed in the state %s", self.sim.slug, self.solved.query())
+        self._telling.tell(BROKEN)
 
     @property
     def before(self) -> Params:

@@ -660,6 +660,24 @@ def test_what_goes_wrong_while_drawing_costs_the_step_alone(caplog: pytest.LogCa
     assert line.exc_info is None
 
 
+def test_a_state_that_cannot_be_drawn_is_told_and_the_session_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+    async def test() -> None:
+        room = Room()
+        room.eye.broken = True
+        room.session.change({"size": 5})
+        await room.drawn()
+        assert "can’t be drawn" in room.errors[-1]
+        room.eye.broken = False
+        room.session.change({"size": 6})
+        await room.drawn()
+        assert room.eye.seen[-1] == (6.0, 12.0)
+        assert len(room.errors) == 1
+
+    with caplog.at_level(logging.ERROR, "sim3"):
+        run(test)
+    assert "size=5" in caplog.text
+
+
 @pytest.mark.parametrize("what", ["drag", "action", "motion", "late motion", "change"])
 @pytest.mark.parametrize("error", [KeyError, IndexError, OverflowError, ZeroDivisionError, TypeError, RecursionError])
 def test_what_a_sim_stumbles_over_is_told_and_the_session_goes_on(

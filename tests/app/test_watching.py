@@ -114,6 +114,21 @@ def test_json_lines_say_the_same_and_nothing_secret() -> None:
     assert "ZeroDivisionError: by the seed" in said["traceback"]
 
 
+def test_what_goes_wrong_again_and_again_is_logged_seldom() -> None:
+    seldom = logs.Seldom()
+
+    def written(at: float, sim: str, error: str) -> str:
+        record = logging.LogRecord("sim3", logging.ERROR, __file__, 1, "%s can't go on: %s", (sim, error), None)
+        record.created = at
+        return record.getMessage() if seldom.filter(record) else ""
+
+    assert written(0.0, "camera", "first") == "camera can't go on: first"
+    assert not any(written(k, "camera", f"{k}") for k in (1.0, 2.0, 59.0))
+    assert written(3.0, "epipolar", "another") == "epipolar can't go on: another"
+    assert written(61.0, "camera", "later") == "camera can't go on: later (3 more like it before)"
+    assert written(122.0, "camera", "again") == "camera can't go on: again"
+
+
 def test_compose_passes_every_setting_on() -> None:
     compose = yaml.safe_load((ROOT / "compose.yaml").read_text("utf-8"))
     settings = {f"SIM3_{name.upper()}" for name in Settings.model_fields} - {"SIM3_FORWARDED_ALLOW_IPS"}
