@@ -112,7 +112,7 @@ def says(p: TriangulationParams, found: list[Found]) -> str:
     if p.pair is None:
         return f"Taken as a rectified rig: b is {quantity(p.baseline, 'm', 3)}, f {quantity(p.focal, 'px', 1)}."
     words = taken(found, (p.left_of_text, p.right_of_text), p.sizes, said=p.own_size is not None)
-    return f"{words} They aren’t rectified, and stand as they were calibrated. {unit(p)}"
+    return f"{words} The cameras aren’t rectified, and stand as they were calibrated. {unit(p)}"
 
 
 def unit(p: TriangulationParams) -> str:

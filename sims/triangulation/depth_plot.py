@@ -28,7 +28,7 @@ NO_DEPTH = 4.0
 """Metres for which the plot has room when there is no point."""
 INSIDE = 0.001
 """Part of the axis that a dragged point keeps from its ends."""
-SAMPLES = 48
+SAMPLES = 24
 """Depths at which the curve of turned cameras is worked out."""
 Curve = tuple[float, float, float]
 """Baseline in metres, focal length in pixels, noise in pixels."""

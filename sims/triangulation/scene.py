@@ -69,9 +69,9 @@ class TriangulationScene:
         left, right = cameras.standing
         sights = (left, cameras.left, s.sight_left), (right, cameras.right, s.sight_right)
         for k, (drawn, (standing, camera, sight)) in enumerate(zip(self.cameras, sights, strict=True)):
-            closest = None if s.closest_points is None else s.closest_points[k]
             drawn.stand(standing, camera, cameras.size, sight)
-            drawn.look(s.status, *(None if at is None else camera.to_camera(at).item(2) for at in (s.point, closest)))
+            behind = s.closest_points[k] if s.status == "behind" and s.closest_points is not None else None
+            drawn.look(*(None if at is None else camera.to_camera(at).item(2) for at in (s.point, behind)))
         self.baseline.stroke((left.center, right.center))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
@@ -155,13 +155,13 @@ class CameraInScene:
         self.pixel.pose(position=(x * near, y * near, near))
         self.pixel.scale(size)
 
-    def look(self, status: str, depth: float | None, closest: float | None) -> None:
-        """Draw the line of sight: to a point at a depth if there is one, else back to where the other is nearest."""
+    def look(self, depth: float | None, behind: float | None) -> None:
+        """Draw the line of sight: to a point's depth, or back to where it is nearest the other one, if either is."""
         x, y = self.sight
         far = FAR if depth is None else 1.2 * in_steps(depth) + 0.15
         self.end = x * far, y * far, far
         self.ray.stroke((ORIGIN, self.end))
-        back = 0.0 if closest is None or status != "behind" else min(max(closest, -BACKWARD), 0.0)
+        back = 0.0 if behind is None else min(max(behind, -BACKWARD), 0.0)
         self.back.show(back < 0.0)
         if back < 0.0:
             self.back.path([ORIGIN, (x * back, y * back, back)])
