@@ -244,11 +244,11 @@ def test_loading_ahead_ends_with_the_section_at_which_the_server_ends() -> None:
     def solve(params: Any) -> Any:
         if params.pitch:
             solved.append(params.pitch)
-            shelf.close()
+            lessons.close()
         return sim.solve(params)
 
-    shelf = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
-    for piece in shelf.loading():
+    lessons = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
+    for piece in lessons.loading():
         piece()
     assert solved == [30], "the second step of the first lesson"
 
