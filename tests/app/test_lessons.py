@@ -309,6 +309,12 @@ def test_text_becomes_what_the_page_works_with(written: Callable[..., Lesson]) -
     assert json.loads(unescape(asked[1]))["params"]["pitch"] == 90
 
 
+def test_no_line_ends_between_a_formula_and_its_comma(written: Callable[..., Lesson]) -> None:
+    (section,) = written("Some $a$, then ($b$) and $c$ too.\n\n$$d$$,\n").sections
+    held = re.findall(r'<span class="together">(.*?)</span>', section.html)
+    assert [re.sub("<.*?>", "", each) for each in held] == ["a,", "(b)"]
+
+
 @pytest.mark.parametrize(
     ("info", "choices", "answer", "said"),
     [
