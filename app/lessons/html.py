@@ -23,6 +23,8 @@ from app.lessons.state import AnySim, State, named, setting, shown, solved
 from sims.kit.sim import Library
 
 SENTENCE = re.compile(r".+?[.!?:](?=\s|$)")
+FORMULA = re.compile(r'\(?<math [^>]*display="inline".*?</math>[,.;:!?)…”’]*', re.DOTALL)
+"""One in a sentence, with the marks that belong to it."""
 OUTSIDE = ("https://", "http://", "mailto:")
 
 
@@ -165,11 +167,11 @@ class Writer:
         html = ""
         for run in _by_line(tokens):
             self._line = next((line(token) for token in run if token.map), self._line)
-            html += str(self._renderer.render(list(run), self._md.options, {}))
+            html += _together(str(self._renderer.render(list(run), self._md.options, {})))
         return html
 
     def _inline(self, tokens: Sequence[Token]) -> str:
-        return str(self._renderer.renderInline(list(tokens), self._md.options, {}))
+        return _together(str(self._renderer.renderInline(list(tokens), self._md.options, {})))
 
     def _box(self, token: Token, inside: list[Token]) -> str:
         self._line = line(token)
@@ -301,6 +303,16 @@ class Writer:
     def _wrong(self, found: str, allowed: str) -> str:
         self.mistakes.append(Mistake(self._line, found, allowed))
         return ""
+
+
+def _together(html: str) -> str:
+    """No line ends between a formula and the comma after it: browsers would end one there."""
+
+    def held(found: re.Match[str]) -> str:
+        alone = found[0].startswith("<") and found[0].endswith(">")
+        return found[0] if alone else f'<span class="together">{found[0]}</span>'
+
+    return FORMULA.sub(held, html)
 
 
 def queries(tokens: Sequence[Token]) -> list[str]:

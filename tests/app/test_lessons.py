@@ -244,11 +244,11 @@ def test_loading_ahead_ends_with_the_section_at_which_the_server_ends() -> None:
     def solve(params: Any) -> Any:
         if params.pitch:
             solved.append(params.pitch)
-            shelf.close()
+            lessons.close()
         return sim.solve(params)
 
-    shelf = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
-    for piece in shelf.loading():
+    lessons = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
+    for piece in lessons.loading():
         piece()
     assert solved == [30], "the second step of the first lesson"
 
@@ -307,6 +307,12 @@ def test_text_becomes_what_the_page_works_with(written: Callable[..., Lesson]) -
     asked = re.search(r'data-set="([^"]*)"', html)
     assert asked is not None
     assert json.loads(unescape(asked[1]))["params"]["pitch"] == 90
+
+
+def test_no_line_ends_between_a_formula_and_its_comma(written: Callable[..., Lesson]) -> None:
+    (section,) = written("Some $a$, then ($b$) and $c$ too.\n\n$$d$$,\n").sections
+    held = re.findall(r'<span class="together">(.*?)</span>', section.html)
+    assert [re.sub("<.*?>", "", each) for each in held] == ["a,", "(b)"]
 
 
 @pytest.mark.parametrize(
