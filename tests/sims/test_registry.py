@@ -229,7 +229,7 @@ def box(model: SceneModel, name: str, text: str, eye: Array, middle: Array, size
     upright, _, level = model.node(name).props["anchor"].partition("-")
     x = u - wide * {"left": 0.0, "center": 0.5, "right": 1.0}[level]
     y = v - high * {"top": 0.0, "center": 0.5, "bottom": 1.0}[upright]
-    return [x, y, x + wide, y + high]
+    return [float(each) for each in (x, y, x + wide, y + high)]
 
 
 @few_states
