@@ -23,8 +23,8 @@ LEAST = 0.6
 """Metres from the middle of the aircraft within which it is turned as a ball of that radius."""
 REACHED = 0.01
 """Degrees from the aircraft within which the target hides in it."""
-ANCHORS = dict(zip(RADII, ("top-center", "bottom-left", "center-left"), strict=True))
-"""The first label hangs lower, clear of the next one where the two arcs meet; the others stand beside their arcs."""
+ANCHORS = dict(zip(RADII, ("top-left", "bottom-left", "center-left"), strict=True))
+"""The first label hangs lower, clear of the next one where the two arcs meet, and of the letter of the world's X."""
 
 
 class EulerScene:

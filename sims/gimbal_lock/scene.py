@@ -31,7 +31,7 @@ PER_RATE = 0.76
 round the aircraft."""
 FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
-TIPS = {"z": 1.74, "y": 1.55, "x": 1.55}
+TIPS = {"z": 1.68, "y": 1.55, "x": 1.55}
 """How far the axes reach, in metres from the middle."""
 ANCHORS = {"z": "bottom-center", "y": "bottom-center", "x": "top-center"}
 """Labels stand above their tip or hang below it: where Z and X point up together, both are read."""

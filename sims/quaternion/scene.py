@@ -18,6 +18,8 @@ from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
 """Radius of the angle's arc, and how far up the axis it is, in metres: outside the unit sphere."""
+BESIDE = 0.72
+"""Metres from the axis to the angle in words: clear of what the arc is held by."""
 LEAST = 0.6
 """Metres from the object's middle within which it is turned as a ball of that radius."""
 LAP = 0.12
@@ -113,7 +115,7 @@ class Axis:
         self.lap.show(again)
         self.line.arc(ARC, radians)
         self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
-        middle = 1.4 * ARC * math.cos(radians / 2), 1.4 * ARC * math.sin(radians / 2), 0.0
+        middle = BESIDE * math.cos(radians / 2), BESIDE * math.sin(radians / 2), 0.0
         self.label.pose(position=middle)
         self.label.text(f"θ {quantity(p.angle, '°', 0)}")
 

@@ -21,7 +21,7 @@ from sims.kit.refusals import BadParams
 from sims.kit.spelling import shown_number
 from sims.kit.viewer import VERSION
 from sims.transform_chain import SIM, ChainParams, ChainSolution, actions, solve
-from sims.transform_chain.labels import HEIGHT, PLANE, WIDTH, said
+from sims.transform_chain.labels import EDGE, HEIGHT, PLANE, WIDTH, said
 from sims.transform_chain.presets import PRESETS, Preset, known
 from sims.transform_chain.views import view_of
 from tests.frames import decode_frame
@@ -410,7 +410,7 @@ def test_words_stand_where_they_say_over_nothing_and_hang_on_nothing_that_moves(
     for k, one in enumerate(kept):
         for other in kept[:k]:
             x, y = np.abs(np.array(PLANE) @ np.subtract(one.place, other.place))
-            wide = 0.5 * WIDTH * radius * (len(one.text) + len(other.text))
+            wide = 0.5 * (2 * EDGE + WIDTH * (len(one.text) + len(other.text))) * radius
             assert x >= wide - 1e-9 or y >= HEIGHT * radius - 1e-9, (one, other)
 
 
@@ -420,7 +420,7 @@ def test_words_give_way_to_more_important_ones_alone() -> None:
     names = [word.name for word in said(heap, solve(heap))]
     assert "x" in names
     assert "T4" in names
-    assert "p" not in names, "it would stand over a letter of the end effector"
+    assert "T1" not in names, "it would stand over a letter of the world's axes"
     stretched = START.changed(SIM.states["planar 2R stretched, singular"])
     assert said(stretched, solve(stretched))[0].text == "⚠ singular pose"
     alone = EIGHT.changed({"stage": 5, "swap": None})
