@@ -95,7 +95,7 @@ def config(settings: Settings, app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
     return uvicorn.Config(
         app, host=settings.host, port=settings.port, ws=Websocket,
-        ws_max_size=LARGEST, ws_per_message_deflate=False, log_level="warning", access_log=False,
+        ws_max_size=LARGEST, ws_per_message_deflate=False, log_config=None, log_level="warning", access_log=False,
         timeout_graceful_shutdown=2, proxy_headers=False, lifespan="on",
     )  # fmt: skip
 

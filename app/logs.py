@@ -59,6 +59,3 @@ def begin(how: str) -> None:
     handler.setFormatter(Json() if how == "json" else logging.Formatter("%(levelname)s %(name)s: %(message)s"))
     handler.addFilter(Seldom())
     logging.basicConfig(level=logging.INFO, handlers=[handler], force=True)
-    for name in ("uvicorn", "uvicorn.error"):
-        logging.getLogger(name).handlers.clear()
-        logging.getLogger(name).propagate = True

@@ -49,7 +49,7 @@ def test_the_image_holds_what_the_server_reads() -> None:
     """`ROOT / "name"` in what runs is a file or folder of the checkout; .dockerignore says which are in the image."""
     held = {line[1:] for line in (ROOT / ".dockerignore").read_text("utf-8").splitlines() if line.startswith("!")}
     read = {
-        node.right.value: f"{path.relative_to(ROOT)}:{node.lineno}"
+        str(node.right.value): f"{path.relative_to(ROOT)}:{node.lineno}"
         for path in sources("geometry", "sims", "app")
         for node in ast.walk(parse(path))
         if isinstance(node, ast.BinOp) and isinstance(node.left, ast.Name) and node.left.id == "ROOT"

@@ -6,6 +6,7 @@ import io
 import json
 import logging
 import re
+import socket
 from typing import Any
 
 import httpx
@@ -72,7 +73,7 @@ def test_no_label_says_who() -> None:
 
 
 def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -> None:
-    with Server(SIM3_DRAIN_SECONDS="8") as server, Page(server.url) as page:
+    with Server(SIM3_DRAIN_SECONDS="8", SIM3_LOG="json") as server, Page(server.url) as page:
         with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as http:
             assert http.get("/readyz").status_code == 200
             server.send_end()
@@ -82,8 +83,15 @@ def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -
             assert "restarted" in refused.text
             page.works()
             assert http.get(f"/sims/{SLUG}").status_code == 200  # lessons are read, for nobody
+        with socket.create_connection(("127.0.0.1", server.port)) as nonsense:
+            nonsense.sendall(b"this is no HTTP\r\n\r\n")
+            assert nonsense.recv(100).startswith(b"HTTP/1.1 400")
         server.send_end()  # asked for the second time, it ends at once
         assert closed(page.channel) == 1012
+        said = [
+            json.loads(line)["message"] for line in server.log().splitlines() if not line.startswith("Sim3 is ready")
+        ]
+        assert "Invalid HTTP request received." in said
 
 
 def test_before_it_ends_pages_are_told_the_state_with_which_they_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
