@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from html import escape
 from typing import Any, NamedTuple
 
@@ -56,9 +58,10 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
         _one_fits(box.items, answer)
     elif isinstance(answer, bool) or not isinstance(answer, int | float):
         raise Wrong(f"{found['path']}, which is {answer!r}", "a number, where one is typed or set")
+    within = float(found["within"] or 0)
     data = {
-        "kind": kind, "path": found["path"], "within": float(found["within"] or 0), "answer": answer,
-        "said": "" if kind == "choice" else shown(sim, found["path"]).text(answer),
+        "kind": kind, "path": found["path"], "within": within, "answer": answer,
+        "said": "" if kind == "choice" else _said(sim, found["path"], answer, within),
         "to": setting(to), "from": None if before is None else setting(before),
     }  # fmt: skip
     asks = {"set": _set, "number": _number, "choice": _choices}[kind](sim, found["path"], box.items, answer, hand)
@@ -67,6 +70,14 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
         f'{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
         f'<p class="room">Your answer:</p><div class="why">{hand.blocks(box.answer)}</div></form>'
     )
+
+
+def _said(sim: AnySim, path: str, answer: float, within: float) -> str:
+    """A number with a digit more than it is asked for, no more."""
+    number = shown(sim, path)
+    if number.boxed or isinstance(answer, int) or not within:
+        return number.text(answer)
+    return replace(number, digits=max(0, 1 - math.floor(math.log10(within)))).text(answer)
 
 
 def _not_empty(info: str, inside: Sequence[Token]) -> None:

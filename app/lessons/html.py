@@ -19,16 +19,20 @@ from app.lessons.boxes import Hand, Wrong
 from app.lessons.concepts import CONCEPTS
 from app.lessons.dialect import LIVE, line, words
 from app.lessons.errors import Mistake
-from app.lessons.state import AnySim, State, read, setting, shown
+from app.lessons.state import AnySim, State, named, setting, shown, solved
 from sims.kit.sim import Library
 
 SENTENCE = re.compile(r".+?[.!?:](?=\s|$)")
+FORMULA = re.compile(r'\(?<math [^>]*display="inline".*?</math>[,.;:!?)…”’]*', re.DOTALL)
+"""One in a sentence, with the marks that belong to it."""
 OUTSIDE = ("https://", "http://", "mailto:")
 
 
 class Step(NamedTuple):
     """A place in the text with a state of the sim."""
 
+    number: int
+    """Its place among the steps, from 1."""
     id: str
     title: str
     state: State
@@ -60,16 +64,17 @@ class Writer:
         self._md = md
         self._links = links
         self._renderer = cast(RendererHTML, md.renderer)
-        self._sim = sim
+        self.sim = sim
         self._library = library
-        self._mistakes = mistakes
-        self._states = {"": read(sim, "", library)}
-        """Those that queries name: each is solved once."""
+        self.mistakes = mistakes
+        self._states = {"": named(sim, "", library)}
+        """Those that queries name: each is solved once, when something of it is asked for."""
         self._state = self._states[""]
         self._line = 1
         self._ids: set[str] = set()
         self._parts: list[tuple[int, str]] = []  # lines and targets of links to a part of this lesson
         self._challenges: list[str] = []
+        self._steps = 0
         self.teacher = ""
         self.concepts: list[str] = []
         rules: dict[str, Callable[[Token], str]] = {
@@ -81,11 +86,7 @@ class Writer:
 
     def sections(self, tokens: Sequence[Token]) -> Iterator[Section]:
         """The parts of a lesson by their headings; a heading that is a link to a state begins a step."""
-        starts = [
-            k
-            for k, token in enumerate(tokens)
-            if token.type == "heading_open" and token.tag == "h2" and not token.level
-        ]
+        starts = _headings(tokens)
         if before := tokens[: starts[0] if starts else len(tokens)]:
             yield Section("start", "", self._blocks(before))
         for k, end in pairwise([*starts, len(tokens)]):
@@ -103,15 +104,16 @@ class Writer:
         self._line = line(heading)
         title = words(heading)
         slug = self._id(title)
-        link = next((each for each in heading.children or () if each.type == "link_open"), None)
-        if link is None:
+        if (query := _query(heading)) is None:
             return Section(slug, title, self._blocks(body))
-        if (state := self._read(unquote(str(link.attrs["href"])))) is None:
+        if (state := self._read(query)) is None:
             return Section(slug, title, "")
         self._state = state
-        before = len(self._challenges)
+        before, wrong = len(self._challenges), len(self.mistakes)
         html = self._blocks(body)
-        step = Step(slug, title, state, self._sentence(body), tuple(self._challenges[before:]))
+        said = self._sentence(body) if len(self.mistakes) == wrong else ""  # what is wrong in it has been said
+        self._steps += 1
+        step = Step(self._steps, slug, title, state, said, tuple(self._challenges[before:]))
         return Section(slug, title, html, step)
 
     def _sentence(self, body: Sequence[Token]) -> str:
@@ -129,7 +131,7 @@ class Writer:
         kind, what = token.meta["kind"], token.meta["what"]
         if kind == "concept":
             return _named(what)
-        number = shown(self._sim, what)
+        number = shown(self.sim, what)
         return number.text(self._state.value(number.path))
 
     def _id(self, title: str) -> str:
@@ -165,11 +167,11 @@ class Writer:
         html = ""
         for run in _by_line(tokens):
             self._line = next((line(token) for token in run if token.map), self._line)
-            html += str(self._renderer.render(list(run), self._md.options, {}))
+            html += _together(str(self._renderer.render(list(run), self._md.options, {})))
         return html
 
     def _inline(self, tokens: Sequence[Token]) -> str:
-        return str(self._renderer.renderInline(list(tokens), self._md.options, {}))
+        return _together(str(self._renderer.renderInline(list(tokens), self._md.options, {})))
 
     def _box(self, token: Token, inside: list[Token]) -> str:
         self._line = line(token)
@@ -181,10 +183,10 @@ class Writer:
         hand = Hand(self._plain, self._inline, self._state_of)
         try:
             if kind == "predict":
-                return boxes.predict(self._sim, info, inside, hand)
+                return boxes.predict(self.sim, info, inside, hand)
             if kind == "check":
                 return boxes.check(inside, hand)
-            html = boxes.challenge(self._sim.challenges, info, inside, hand)
+            html = boxes.challenge(self.sim.challenges, info, inside, hand)
         except Wrong as wrong:
             return self._wrong(wrong.found, wrong.allowed)
         name = info.split()[1]
@@ -198,8 +200,8 @@ class Writer:
         try:
             asked = query.removeprefix("?")
             if asked not in self._states:
-                self._states[asked] = read(self._sim, asked, self._library)
-            return self._states[asked]
+                self._states[asked] = named(self.sim, asked, self._library)
+            return solved(self._states[asked])
         except LookupError as error:
             raise Wrong(f"the state {query}", str(error.args[0])) from None
 
@@ -212,7 +214,7 @@ class Writer:
 
     def _value(self, what: str, tag: str = "span") -> str:
         try:
-            value = shown(self._sim, what)
+            value = shown(self.sim, what)
             return value.html(self._state.value(value.path), tag)
         except LookupError as error:
             return self._wrong(f"{{value:{what}}}", str(error.args[0]))
@@ -280,7 +282,7 @@ class Writer:
     def _spelled(self, what: str) -> str:
         """A value as it stands in a link."""
         try:
-            value = shown(self._sim, what)
+            value = shown(self.sim, what)
             found = self._state.value(value.path)
         except LookupError as error:
             return self._wrong(f"{{value:{what}}}", str(error.args[0]))
@@ -299,8 +301,36 @@ class Writer:
             return None
 
     def _wrong(self, found: str, allowed: str) -> str:
-        self._mistakes.append(Mistake(self._line, found, allowed))
+        self.mistakes.append(Mistake(self._line, found, allowed))
         return ""
+
+
+def _together(html: str) -> str:
+    """No line ends between a formula and the comma after it: browsers would end one there."""
+
+    def held(found: re.Match[str]) -> str:
+        alone = found[0].startswith("<") and found[0].endswith(">")
+        return found[0] if alone else f'<span class="together">{found[0]}</span>'
+
+    return FORMULA.sub(held, html)
+
+
+def queries(tokens: Sequence[Token]) -> list[str]:
+    """What names the states of a lesson's steps, before any is looked at."""
+    return [query for k in _headings(tokens) if (query := _query(tokens[k + 1])) is not None]
+
+
+def _headings(tokens: Sequence[Token]) -> list[int]:
+    """Where the headings begin that part a lesson."""
+    return [
+        k for k, token in enumerate(tokens) if token.type == "heading_open" and token.tag == "h2" and not token.level
+    ]
+
+
+def _query(heading: Token) -> str | None:
+    """The state that a step's heading is a link to; none where the heading is no step's."""
+    link = next((each for each in heading.children or () if each.type == "link_open"), None)
+    return None if link is None else unquote(str(link.attrs["href"]))
 
 
 def _named(concept: str) -> str:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import count, islice
 from pathlib import Path
-from typing import Any
+from threading import Lock
+from typing import Any, Self
 from urllib.parse import urlsplit
 
 from app.lessons import dialect
 from app.lessons.concepts import CONCEPTS
 from app.lessons.errors import LessonError, Mistake
-from app.lessons.html import Section, Step, Writer
-from app.lessons.state import AnySim, read, setting
+from app.lessons.html import Section, Step, Writer, queries
+from app.lessons.state import AnySim, State, named, read, setting
 from sims.kit.sim import Library
 
 LARGEST = 400_000
@@ -25,25 +26,70 @@ HEAD = {"title": True, "summary": True, "sim": False, "minutes": False}
 """What may stand at a file's head, and whether it must."""
 
 
-@dataclass(frozen=True)
 class Lesson:
-    """One file, checked and made into HTML."""
+    """One file, as it is checked and made into HTML: each section when it is first asked for, for that takes long.
 
-    name: str
-    sim: AnySim
-    title: str
-    summary: str
-    minutes: int | None
-    sections: tuple[Section, ...]
-    teacher: str
-    """The teacher's part, as HTML."""
-    concepts: tuple[str, ...]
-    """Slugs of the concepts that are learnt in it."""
+    What a state gives must be worked out, and for some that takes seconds; what is read first needn't wait for the
+    rest. Whoever comes to the end of the sections is told, by LessonError, what is wrong with the file.
+    """
+
+    def __init__(self, path: Path, name: str, written: dialect.Written, writer: Writer) -> None:
+        head = written.head
+        self.name = name
+        self.sim = writer.sim
+        self.title = head.get("title", "")
+        self.summary = head.get("summary", "")
+        self.minutes = int(head["minutes"]) if MINUTES.fullmatch(head.get("minutes", "")) else None
+        self.queries = queries(written.tokens)
+        """What names the states of its steps."""
+        self._file = path.name
+        self._writer = writer
+        self._writing = writer.sections(written.tokens)
+        self._written: list[Section] = []
+        self._turn = Lock()  # of several who read it at once, one writes
+
+    def each(self) -> Iterator[Section]:
+        """Its sections in order, as soon as each is written."""
+        for k in count():
+            with self._turn:
+                if k == len(self._written):
+                    self._written += islice(self._writing, 1)
+            if k == len(self._written):
+                break
+            yield self._written[k]
+        if self._writer.mistakes:
+            raise LessonError(self._file, self._writer.mistakes)
+
+    def finished(self) -> Self:
+        """The lesson itself, all of it written. Raises LessonError with all that is wrong with it."""
+        for _ in self.each():
+            pass
+        return self
+
+    @property
+    def begins(self) -> State:
+        """The state of its first step, or else the one in which the sim opens."""
+        return named(self.sim, next(iter(self.queries), ""))
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """All of them."""
+        return tuple(self.each())
 
     @property
     def steps(self) -> list[Step]:
         """Its steps, in order."""
-        return [section.step for section in self.sections if section.step is not None]
+        return [section.step for section in self.each() if section.step is not None]
+
+    @property
+    def teacher(self) -> str:
+        """The teacher's part, as HTML."""
+        return self.finished()._writer.teacher
+
+    @property
+    def concepts(self) -> tuple[str, ...]:
+        """Slugs of the concepts that are learnt in it."""
+        return tuple(self.finished()._writer.concepts)
 
     def data(self) -> list[dict[str, Any]]:
         """Its steps for the page: what the sim is set to at each."""
@@ -57,7 +103,12 @@ class Lesson:
 
 
 def load(path: Path, name: str, sims: tuple[AnySim, ...], given: Callable[[AnySim], tuple[Library, ...]]) -> Lesson:
-    """The lesson of a file. Raises LessonError with all that is wrong with it."""
+    """The lesson of a file, all of it written. Raises LessonError with all that is wrong with it."""
+    return begun(path, name, sims, given).finished()
+
+
+def begun(path: Path, name: str, sims: tuple[AnySim, ...], given: Callable[[AnySim], tuple[Library, ...]]) -> Lesson:
+    """The same, read and not written yet. Raises LessonError where there is nothing to write."""
     text = _text(path)
     md = dialect.parser()
     try:
@@ -71,13 +122,7 @@ def load(path: Path, name: str, sims: tuple[AnySim, ...], given: Callable[[AnySi
         raise LessonError(path.name, wrong or [Mistake(1, "no sim at the head", "sim: one of " + ", ".join(known))])
     sim = known[slug]
     writer = Writer(md, sim, given(sim), wrong, partial(_leads_somewhere, known, given))
-    sections = tuple(writer.sections(written.tokens))
-    if wrong:
-        raise LessonError(path.name, wrong)
-    head = written.head
-    minutes = int(head["minutes"]) if "minutes" in head else None
-    concepts = tuple(writer.concepts)
-    return Lesson(name, sim, head["title"], head["summary"], minutes, sections, writer.teacher, concepts)
+    return Lesson(path, name, written, writer)
 
 
 def _text(path: Path) -> str:

@@ -12,7 +12,7 @@ from threading import Lock
 from typing import NamedTuple
 
 from app.lessons.errors import LessonError, Mistake
-from app.lessons.lesson import Lesson, load
+from app.lessons.lesson import Lesson, begun, load
 from app.lessons.state import AnySim
 from app.settings import ROOT
 from sims.kit.sim import Library
@@ -43,6 +43,7 @@ class Shelf:
         self._given = given
         self._of_sims: dict[str, Lesson | None] = {}
         self._turns = {sim.slug: Lock() for sim in sims}  # a page may ask while all are loaded ahead
+        self._closed = False
         self.own: dict[str, Lesson] = {}
         """Those of the folder, by their names."""
         self.broken: dict[str, LessonError] = {}
@@ -56,15 +57,30 @@ class Shelf:
 
     def of_sim(self, sim: AnySim) -> Lesson | None:
         """The same, in this thread: where states take long to solve, it takes seconds."""
+        lesson = self.begun(sim)
+        return lesson and lesson.finished()
+
+    def begun(self, sim: AnySim) -> Lesson | None:
+        """The same, whose sections are written as they are asked for."""
         with self._turns[sim.slug]:
             if sim.slug not in self._of_sims:
                 path = place(sim)
-                self._of_sims[sim.slug] = self._load(path, sim.slug) if path.is_file() else None
+                self._of_sims[sim.slug] = begun(path, sim.slug, self._sims, self._given) if path.is_file() else None
             return self._of_sims[sim.slug]
 
     def loading(self) -> list[Callable[[], object]]:
         """What loads the lessons of all sims, one by one, so that nobody waits for one."""
-        return [partial(self.of_sim, sim) for sim in self._sims]
+        return [partial(self._load, sim) for sim in self._sims]
+
+    def close(self) -> None:
+        """The server ends: what is loaded ahead is left as it is after the section that is being written."""
+        self._closed = True
+
+    def _load(self, sim: AnySim) -> None:
+        lesson = None if self._closed else self.begun(sim)
+        for _ in lesson.each() if lesson else ():
+            if self._closed:
+                break
 
     @cached_property
     def outlines(self) -> dict[str, Outline]:
@@ -76,15 +92,12 @@ class Shelf:
         """In which sim's lesson, by its slug, each concept is learnt."""
         return {concept: slug for slug, outline in self.outlines.items() for concept in outline.concepts}
 
-    def _load(self, path: Path, name: str) -> Lesson:
-        return load(path, name, self._sims, self._given)
-
     def _add(self, path: Path) -> None:
         try:
             if not NAME.fullmatch(path.stem):
                 allowed = "small letters, digits and hyphens, as in our-robot.md"
                 raise LessonError(path.name, [Mistake(1, f"the name {path.name}", allowed)])
-            self.own[path.stem] = self._load(path, path.stem)
+            self.own[path.stem] = load(path, path.stem, self._sims, self._given)
         except LessonError as error:
             self.broken[path.name] = error
             log.warning("not a lesson:\n%s", error)

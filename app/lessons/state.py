@@ -18,6 +18,7 @@ from sims.kit.controls import letters, unit_of
 from sims.kit.fields import Vector
 from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
+from sims.kit.progress import Superseded, goes_on
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
@@ -138,22 +139,38 @@ def _can_be_shown(value: Any) -> None:
 
 
 def read(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
-    """The state that a query names. Raises LookupError in words."""
+    """The state that a query names, solved. Raises LookupError in words."""
+    return solved(named(sim, query, library))
+
+
+def named(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
+    """The same, not solved yet. Raises LookupError in words."""
     try:
         items = parse_qsl(query.removeprefix("?"), keep_blank_values=True, strict_parsing=bool(query.strip("?")))
     except ValueError:
         raise LookupError("a link's query, as in ?pitch=90&yaw=30") from None
     try:
         params = links.read(sim, items)
-        state = State(sim, params.query(), params, _view(dict(items)), library)
-        state.solution  # noqa: B018 what has no solution isn't a state of a lesson
     except BadParams as error:
         name, _, allowed = error.complaints[0][:3]
         raise LookupError(f"for {name}: {allowed}") from None
+    return State(sim, params.query(), params, _view(dict(items)), library)
+
+
+def solved(state: State) -> State:
+    """The state itself: what has no solution isn't one of a lesson.
+
+    Raises LookupError in words; `Superseded` where a server ends that reads ahead.
+    """
+    goes_on()
+    try:
+        state.solution  # noqa: B018 it is kept
+    except Superseded:
+        raise
     except GeometryError as error:
         raise LookupError(f"for {error.argument}: {error.allowed}") from None
     except Exception as error:
-        log.exception("%s can't solve %r", sim.slug, query[:200])
+        log.exception("%s can't solve %r", state.sim.slug, state.query[:200])
         raise LookupError(f"a state that the sim can solve ({type(error).__name__})") from None
     return state
 

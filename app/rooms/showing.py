@@ -30,7 +30,7 @@ class Showing:
         """
         parts, values = self._column.of(params, solution)
         if words:
-            parts["caption"] = escape(words)
+            parts["caption"] = f'<span class="s3-told">{escape(words)}</span>'
         new_parts = {name: html for name, html in parts.items() if self._parts.get(name) != html}
         if PANES in new_parts:  # other frames, which are to be filled
             new_parts |= {name: html for name, html in parts.items() if name.startswith("pane:")}

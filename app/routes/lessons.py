@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from fastapi import APIRouter, HTTPException, Request
 from fastapi.responses import RedirectResponse, Response
 
@@ -24,7 +26,7 @@ async def launcher(request: Request, given: Given) -> Response:
 @page("/sims/{slug}", router)
 async def of_sim(request: Request, given: Given, slug: str) -> Response:
     sim = sim_or_404(slug)
-    lesson = await given.lessons.soon(sim)
+    lesson = await asyncio.to_thread(given.lessons.begun, sim)
     given.sessions.work_ahead("lessons", given.lessons.loading())  # who reads one will read others
     return _lesson(request, sim, lesson, f"sims/{slug}")
 
@@ -41,12 +43,13 @@ def _lesson(request: Request, sim: AnySim, lesson: Lesson | None, path: str) -> 
     """The page of a lesson; the sim beside it begins as the link says, else as the first step does."""
     items = request.query_params.multi_items()
     params, query = links.read(sim, items), links.own(items)
-    if not query and lesson is not None and lesson.steps:
-        params = lesson.steps[0].state.params
+    first = query
+    if not query and lesson is not None:
+        params, first = lesson.begins.params, lesson.begins.link
     address = str(request.url.replace(query=""))
-    return rendering.render(
-        request, "sim.html", sim=sim, lesson=lesson, query=query, scripts=code.shown(sim, params), address=address,
-        path=path, card=card(request, sim, lesson, path),
+    return rendering.in_parts(
+        request, "sim.html", sim=sim, lesson=lesson, query=query, first=first, scripts=code.shown(sim, params),
+        address=address, path=path, card=card(request, sim, lesson, path),
         code_of_address=qr.inline(address),
     )  # fmt: skip
 

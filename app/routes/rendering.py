@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from fastapi import HTTPException, Request
-from fastapi.responses import Response
+from fastapi.responses import Response, StreamingResponse
 from starlette.templating import Jinja2Templates
 
 from app import scripts
@@ -65,14 +65,35 @@ def module(request: Request, name: str, folder: str = "viewer") -> str:
 
 def render(request: Request, template: str, status: int = 200, **context: Any) -> Response:
     """An HTML page from a template."""
-    shared = {
+    return templates.TemplateResponse(request, template, _shared(request, status) | context, status_code=status)
+
+
+def in_parts(request: Request, template: str, **context: Any) -> Response:
+    """The same, sent section by section: what stands in the first can be read while the last is still made."""
+    context = {"request": request, **_shared(request, 200), **context}
+    return StreamingResponse(by_section(templates.get_template(template).generate(context)), media_type="text/html")
+
+
+def by_section(pieces: Iterable[str]) -> Iterator[str]:
+    """Pieces of a page put together up to the end of each section."""
+    part: list[str] = []
+    for piece in pieces:
+        part.append(piece)
+        if "</section>" in piece:
+            yield "".join(part)
+            part.clear()
+    yield "".join(part)
+
+
+def _shared(request: Request, status: int) -> dict[str, Any]:
+    """What every template may use."""
+    return {
         "base": base(request),
         "static": functools.partial(static, request),
         "module": functools.partial(module, request),
         "sims": SIMS,
         "status": status,
     }
-    return templates.TemplateResponse(request, template, {**shared, **context}, status_code=status)
 
 
 def viewer(
@@ -90,6 +111,7 @@ def viewer(
         "slug": sim.slug, "title": sim.title, "watching": not key,
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
+        "under": sim.under is not None,
         "code": f"{place}/code" if scripts.script(sim, "numpy") else "",
         "files": None if sim.files is None else {"largest": largest},
         "steps": steps,

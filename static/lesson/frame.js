@@ -9,6 +9,8 @@ export class Frame {
     this.asked = null; // when the question was sent that isn't answered yet
     this.stale = false;
     this.again = 0;
+    this.heard = false; // whether the sim has said anything
+    this.waiting = null; // what it is to be set to when it can hear
     addEventListener("message", ({ source, origin, data }) => {
       if (origin === location.origin && source === frame.contentWindow) this.take(data);
     });
@@ -28,11 +30,18 @@ export class Frame {
   }
 
   take(data) {
+    this.begins();
     const type = String(data?.type).replace("sim3:", "");
     if (type === "state") this.takeState(data);
     else if (type === "drawn") this.ask();
     else if (type === "ready") this.askAnew();
     if (["ready", "challenge", "touched", "error", "picture"].includes(type)) this.tell(type, data);
+  }
+
+  // A step may be reached before the sim is there, by a link to it.
+  begins() {
+    if (!this.heard && this.waiting) this.post(this.waiting);
+    this.heard = true;
   }
 
   takeState({ params, query, solution }) {
@@ -62,7 +71,9 @@ export class Frame {
 
   // What a step, a link or a question names: `seconds` to glide there.
   set({ params, view }, seconds) {
-    this.post({ type: "sim3:set", params, ...(seconds ? { seconds } : {}), ...(view ? { view } : {}) });
+    const message = { type: "sim3:set", params, ...(seconds ? { seconds } : {}), ...(view ? { view } : {}) };
+    if (!this.heard) this.waiting = message;
+    this.post(message);
   }
 
   // What somebody moves or types in the text, as if they did it beside the scene.

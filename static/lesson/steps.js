@@ -9,6 +9,7 @@ export class Steps {
     this.at = -1;
     this.query = ""; // of the sim's state
     this.taken = false; // somebody moved the sim since the text did
+    this.shown = null; // what the text moved it to
     this.mine = null; // their state
     sim.on("state", (state) => this.hear(state));
     sim.on("touched", () => (this.taken = true));
@@ -30,7 +31,7 @@ export class Steps {
 
   hear({ params, query }) {
     this.query = query;
-    if (query === this.step?.query) this.taken = false;
+    if (query === this.step?.query) this.reached();
     if (this.taken) this.mine = { params, query };
     this.offer();
   }
@@ -50,21 +51,29 @@ export class Steps {
     if (k === this.at) return;
     this.at = k;
     for (const [i, { node }] of this.steps.entries()) node.classList.toggle("current", i === k);
-    if (this.query === this.step.query) this.taken = false;
+    if (this.query === this.step.query) this.reached();
     else if (!this.taken) this.go(this.step, GLIDE);
     this.offer();
   }
 
+  reached() {
+    this.taken = false;
+    this.shown = this.step;
+  }
+
   go(state, seconds) {
     this.taken = false;
+    this.shown = state;
     this.sim.set(state, seconds);
   }
 
-  // "Show this" where the sim is elsewhere, and the way back to what somebody had.
+  // "Show this" where the sim is elsewhere, by somebody's hand or after a question or a link, and the way back to what
+  // somebody had.
   offer() {
+    const away = this.query !== this.step?.query && (this.taken || this.shown !== this.step);
     for (const button of document.querySelectorAll("[data-show], [data-mine]")) {
       const here = this.step?.node.contains(button);
-      const offered = "show" in button.dataset ? this.taken && this.query !== this.step?.query : !this.taken && this.mine;
+      const offered = "show" in button.dataset ? away : !this.taken && this.mine;
       button.hidden = !here || !offered;
     }
   }

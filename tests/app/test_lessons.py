@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from html import unescape
 from pathlib import Path
@@ -13,11 +13,13 @@ from typing import Any
 
 import httpx
 import pytest
+from markupsafe import Markup
 
 from app.lessons.concepts import CONCEPTS
 from app.lessons.errors import LessonError
-from app.lessons.lesson import Lesson, load
+from app.lessons.lesson import Lesson, begun, load
 from app.lessons.shelf import Shelf
+from app.routes.rendering import by_section
 from app.settings import ROOT
 from sims import SIMS, by_slug
 from sims.kit.sim import Library, Sim
@@ -76,6 +78,8 @@ MISTAKES: dict[str, tuple[str, int, str, str]] = {
     "state that is no query": ("## [A](pitch)\n", 1, "the state pitch", "?pitch=90&yaw=30"),
     "view that is none": ("## [A](?view=1,2)\n", 1, "the state ?view=1,2", "six numbers"),
     "no such value": ("One\ntwo {value:speed}.\n", 2, "{value:speed}", "pitch, "),
+    "no such value in a step": ("## [A](?)\n\nOne {value:speed}.\n", 3, "{value:speed}", "pitch, "),
+    "formula of a step that breaks": ("## [A](?)\n\nOne $\\nonsense x$.\n", 3, "\\nonsense", "LaTeX"),
     "index too large": ("\n{value:R.3.0}\n", 2, "{value:R.3.0}", "0 to 2"),
     "more than a number": ("{value:R}\n", 1, "{value:R}", "one of its 3 entries"),
     "too many digits": ("{value:pitch:12}\n", 1, "{value:pitch:12}", "0 to 9 digits"),
@@ -209,6 +213,59 @@ def test_a_state_that_makes_a_sim_fail_is_a_mistake(written: Callable[..., Lesso
         written("\n## [A](?pitch=13)\n", sims=(replace(sim, solve=solve),))
 
 
+# ---- the page of a lesson needn't wait for its end
+
+
+def test_each_section_is_written_when_it_is_asked_for(tmp_path: Path) -> None:
+    sim, solved = by_slug("gimbal-lock"), list[float]()
+    assert sim is not None
+
+    def solve(params: Any) -> Any:
+        solved.append(params.pitch)
+        return sim.solve(params)
+
+    path = tmp_path / "ours.md"
+    path.write_text(HEAD + "Before.\n\n## [A](?pitch=10)\n\n## [B](?pitch=20)\n\n{value:speed}\n")
+    lesson = begun(path, "ours", (replace(sim, solve=solve),), given)
+    assert (lesson.queries, lesson.begins.link) == (["?pitch=10", "?pitch=20"], "pitch=10")
+    sections = lesson.each()
+    assert [next(sections).id for _ in range(2)] == ["start", "a"]
+    assert solved == [10]
+    for _ in range(2):  # who comes later is told too
+        with pytest.raises(LessonError, match=r"ours\.md:12: \{value:speed\}"):
+            lesson.finished()
+    assert solved == [10, 20], "each state is solved once"
+
+
+def test_loading_ahead_ends_with_the_section_at_which_the_server_ends() -> None:
+    sim, solved = by_slug("gimbal-lock"), list[float]()
+    assert sim is not None
+
+    def solve(params: Any) -> Any:
+        if params.pitch:
+            solved.append(params.pitch)
+            lessons.close()
+        return sim.solve(params)
+
+    lessons = Shelf((replace(sim, solve=solve), *(each for each in SIMS if each is not sim)), given)
+    for piece in lessons.loading():
+        piece()
+    assert solved == [30], "the second step of the first lesson"
+
+
+def test_a_page_is_sent_section_by_section() -> None:
+    pulled = list[int]()
+
+    def pieces() -> Iterator[str]:
+        for k, piece in enumerate(["<p>", "&", "</p></section>", "<section>b</section>", "end"]):
+            pulled.append(k)
+            yield Markup(piece)
+
+    parts = by_section(pieces())
+    assert (next(parts), pulled) == ("<p>&</p></section>", [0, 1, 2])
+    assert [*parts] == ["<section>b</section>", "end"]
+
+
 # ---- what a teacher writes is text
 
 
@@ -252,22 +309,31 @@ def test_text_becomes_what_the_page_works_with(written: Callable[..., Lesson]) -
     assert json.loads(unescape(asked[1]))["params"]["pitch"] == 90
 
 
+def test_no_line_ends_between_a_formula_and_its_comma(written: Callable[..., Lesson]) -> None:
+    (section,) = written("Some $a$, then ($b$) and $c$ too.\n\n$$d$$,\n").sections
+    held = re.findall(r'<span class="together">(.*?)</span>', section.html)
+    assert [re.sub("<.*?>", "", each) for each in held] == ["a,", "(b)"]
+
+
 @pytest.mark.parametrize(
-    ("info", "choices", "answer"),
+    ("info", "choices", "answer", "said"),
     [
-        ("dof at ?pitch=90", "- `3`\n- `2` two\n", 2),
-        ("dof from ? to ?pitch=90", "- `smaller` less\n- `same` as before\n", "smaller"),
-        ("conditioning within 0.05 at ?pitch=60", "", 0.5),
-        ("pitch set within 2 at ?pitch=45", "", 45),
+        ("dof at ?pitch=90", "- `3`\n- `2` two\n", 2, ""),
+        ("dof from ? to ?pitch=90", "- `smaller` less\n- `same` as before\n", "smaller", ""),
+        ("conditioning within 0.05 at ?pitch=60", "", 0.5, "0.500"),
+        ("conditioning within 3 at ?pitch=60", "", 0.5, "0.5"),
+        ("pitch set within 2 at ?pitch=45", "", 45, "45°"),
     ],
 )
 def test_the_answer_of_a_prediction_is_worked_out(
-    written: Callable[..., Lesson], info: str, choices: str, answer: float | str
+    written: Callable[..., Lesson], info: str, choices: str, answer: float | str, said: str
 ) -> None:
     lesson = written(f"::: predict {info}\nWhat?\n\n{choices}\n---\nSo.\n:::\n")
     asked = re.search(r'data-predict="([^"]*)"', lesson.sections[0].html)
     assert asked is not None
-    assert json.loads(unescape(asked[1]))["answer"] == (pytest.approx(answer) if isinstance(answer, float) else answer)
+    data = json.loads(unescape(asked[1]))
+    assert data["answer"] == (pytest.approx(answer) if isinstance(answer, float) else answer)
+    assert data["said"] == said
 
 
 # ---- the folder of a school

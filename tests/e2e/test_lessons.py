@@ -20,8 +20,17 @@ def reader(classroom: Classroom) -> Learner:
 
 def entered(classroom: Classroom, path: str) -> Learner:
     learner = classroom.open_column("gimbal-lock/embed", size=DESK, reduced_motion="reduce")
+    return opened(learner, path)
+
+
+def opened(learner: Learner, path: str) -> Learner:
+    learner.leave()  # what this page's sim still says isn't taken for the lesson's
     learner.page.goto(f"{learner.url}/sims/{path}")
-    learner.sockets.forget()
+    return at_lesson(learner)
+
+
+def at_lesson(learner: Learner) -> Learner:
+    """Wait until the lesson before the learner is live."""
     learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
     learner.until(lambda: bool(learner.sockets.states))
     expect(learner.page.locator("html.live")).to_be_attached()
@@ -45,6 +54,9 @@ def number(learner: Learner, name: str) -> Locator:
 def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: Learner) -> None:
     page = reader.page
     show, mine = page.get_by_role("button", name="Show this"), page.get_by_role("button", name="Back to mine")
+    box = page.locator("iframe").first.bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] <= DESK["height"], "the sim's lower end isn't in sight as the page opens"
     read(reader, "the-last-degree")
     state(reader, pitch=89, yaw=0)
     expect(show).to_be_hidden()
@@ -94,13 +106,16 @@ def test_questions_and_challenges_are_answered(reader: Learner) -> None:
     page = reader.page
     read(reader, "the-last-degree")
     state(reader, pitch=89)
-    predict = page.locator("[data-predict]").first
+    predict = page.locator("#the-last-degree [data-predict]")
     predict.get_by_role("button").click()
     expect(predict.get_by_role("status")).to_have_text("Choose one first.")
     predict.locator("[data-right]").check()
     predict.get_by_role("button").click()
     expect(predict.get_by_role("status")).to_contain_text("You saw that coming.")
     expect(predict.locator(".why")).to_be_visible()
+    state(reader, pitch=90)
+    page.locator(".current").get_by_role("button", name="Show this").click()
+    state(reader, pitch=89)
 
     check = page.locator("[data-check]").first
     check.locator("input:not([data-right])").first.check()
@@ -135,6 +150,45 @@ def test_a_lesson_opened_in_a_state_is_not_overruled(classroom: Classroom) -> No
     state(reader, pitch=89)
     read(reader, "the-other-end")
     state(reader, pitch=-90)
+
+
+def test_a_link_to_a_step_the_ways_of_the_browser_and_another_tab(classroom: Classroom) -> None:
+    reader = entered(classroom, "gimbal-lock#the-last-degree")
+    page = reader.page
+    state(reader, pitch=89)
+    page.evaluate("location.hash = 'the-other-end'")
+    state(reader, pitch=-90)
+    page.go_back()
+    state(reader, pitch=89)
+    page.go_forward()
+    state(reader, pitch=-90)
+    between = {told["params"]["pitch"] for told in reader.sockets.states} - {0, 89, -90}
+    assert not between, "under reduced motion nothing glides"
+
+    tab = Learner(page.context.new_page(), reader.witness, reader.url)
+    tab.open_column("gimbal-lock/embed")
+    opened(tab, "gimbal-lock#the-last-degree")
+    state(tab, pitch=89)
+    reader.frame.locator("[data-slide=yaw]").press("ArrowRight")
+    state(reader, pitch=-90, yaw=1)
+    assert tab.params["yaw"] == 0, "each tab has a sim of its own"
+    tab.page.close()
+
+    page.goto(f"{reader.url}/concepts")
+    reader.sockets.forget()
+    page.go_back()
+    at_lesson(reader)
+    expect(page.locator(".current")).to_have_id("the-other-end")
+    state(reader, pitch=-90, yaw=1)
+
+
+def test_beside_a_lesson_the_sim_leaves_the_word_to_the_text(reader: Learner) -> None:
+    caption, yaw = reader.frame.locator(".s3-caption"), reader.frame.locator("[data-slide=yaw]")
+    expect(caption).to_be_hidden()
+    expect(yaw).to_be_in_viewport()
+    expect(reader.frame.locator(".s3-lamps")).to_be_in_viewport()
+    reader.press("Try to turn about the lost axis")
+    expect(caption).to_be_visible()
 
 
 def test_a_lesson_is_for_everybody(reader: Learner) -> None:
