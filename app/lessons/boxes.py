@@ -28,6 +28,8 @@ class Hand(NamedTuple):
     inline: Callable[[Sequence[Token]], str]
     read: Callable[[str], State]
     """The state that a query names."""
+    said_of: Callable[[State, Sequence[Token]], str]
+    """Blocks whose numbers are those of a state, wherever the sim goes."""
 
 
 class Wrong(Exception):
@@ -68,7 +70,7 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
     return (
         f'<form class="box predict" data-predict="{escape(json.dumps(data))}"><fieldset><legend>Predict</legend>'
         f'{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
-        f'<p class="room">Your answer:</p><div class="why">{hand.blocks(box.answer)}</div></form>'
+        f'<p class="room">Your answer:</p><div class="why">{hand.said_of(to, box.answer)}</div></form>'
     )
 
 

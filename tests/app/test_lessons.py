@@ -364,6 +364,17 @@ def test_the_answer_of_a_prediction_is_worked_out(
     assert data["said"] == said
 
 
+def test_numbers_of_an_answer_are_those_of_the_state_that_was_asked_for(written: Callable[..., Lesson]) -> None:
+    asked = "::: predict dof from ? to ?pitch=90\nNow {value:pitch}.\n\n- `smaller` less\n- `same` as before\n\n---\n"
+    (section,) = written(asked + "Then {value:pitch}, $\\theta = {value:dof}$.\n:::\n\n{value:pitch}\n").sections
+    before, why, after = re.split(r'<div class="why">|</form>', section.html)
+    assert ">0°</span>" in before
+    assert ">0°</span>" in after
+    assert "Then <span>90°</span>" in why
+    assert "<mn>2</mn>" in why
+    assert "data-value" not in why
+
+
 # ---- the folder of a school
 
 FILES: dict[str, bytes] = {
