@@ -64,6 +64,8 @@ def test_every_sim_has_a_lesson_that_loads(shelf: Shelf, sim: AnySim) -> None:
     assert lesson is not None
     assert lesson.steps
     assert all(step.words for step in lesson.steps), "the strip in a frame has nothing to say"
+    html = "".join(section.html for section in lesson.sections)
+    assert html.count("<form") == html.count('<form method="dialog"'), "an answer given early leads away from the page"
 
 
 def test_each_concept_is_learnt_in_one_place(shelf: Shelf) -> None:

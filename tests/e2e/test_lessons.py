@@ -33,7 +33,7 @@ def at_lesson(learner: Learner) -> Learner:
     learner.sockets.forget()
     learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
     learner.until(lambda: bool(learner.sockets.states))
-    expect(learner.page.locator("html.live")).to_be_attached()
+    expect(learner.page.get_by_role("button", name="Print a handout")).to_be_visible()
     return learner
 
 
