@@ -69,8 +69,8 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
     }  # fmt: skip
     asks = {"set": _set, "number": _number, "choice": _choices}[kind](sim, found["path"], box.items, answer, hand)
     return (
-        f'<form method="dialog" class="box predict" data-predict="{escape(json.dumps(data))}"><fieldset><legend>Predict</legend>'
-        f'{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
+        f'<form method="dialog" class="box predict" data-predict="{escape(json.dumps(data))}">'
+        f'<fieldset><legend>Predict</legend>{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
         f'<p class="room">Your answer:</p><div class="why">{hand.said_of(to, box.answer)}</div></form>'
     )
 
@@ -141,8 +141,8 @@ def check(inside: Sequence[Token], hand: Hand) -> str:
         for k, item in enumerate(box.items)
     )
     return (
-        f'<form method="dialog" class="box check" data-check><fieldset><legend>Check yourself</legend>{hand.blocks(box.question)}'
-        f'{choices}</fieldset><p role="status"></p>'
+        f'<form method="dialog" class="box check" data-check><fieldset><legend>Check yourself</legend>'
+        f'{hand.blocks(box.question)}{choices}</fieldset><p role="status"></p>'
         f"<details><summary>Worked answer</summary>{hand.blocks(box.answer)}</details></form>"
     )
 
