@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import os
 import signal
 import sys
 import threading
@@ -22,6 +23,8 @@ from sims.kit.viser_internals import ViserHost
 log = logging.getLogger("sim3")
 SWITCH = 0.001
 """Seconds that a thread which works beside the event loop may keep Python's lock when the loop asks for it."""
+TELLING = 0.05
+"""Seconds in which pages have been told what they go on from."""
 
 
 def main() -> None:
@@ -56,6 +59,10 @@ def main() -> None:
     host.stop()
     if not server.started:
         raise SystemExit(f"Sim3 can't listen on {settings.host}:{settings.port}; is the port taken? Set SIM3_PORT.")
+    # Threads that still solve or read lessons work for nobody, and Python would wait for them, be it for a minute.
+    logging.shutdown()
+    sys.stdout.flush()
+    os._exit(0)
 
 
 class Ending:
@@ -71,9 +78,9 @@ class Ending:
         if self._services.sessions.draining:
             self.now()
             return
-        self._services.sessions.draining = True
+        self._services.sessions.drain()
         log.info("ending: no new rooms are taken, and /readyz says so")
-        asyncio.get_running_loop().call_later(self._seconds, self._last)
+        asyncio.get_running_loop().call_later(max(self._seconds, TELLING), self._last)
 
     def _last(self) -> None:
         self._services.bridge.visits.send_elsewhere()
@@ -88,7 +95,7 @@ def config(settings: Settings, app: FastAPI) -> uvicorn.Config:
     """How uvicorn serves the application."""
     return uvicorn.Config(
         app, host=settings.host, port=settings.port, ws=Websocket,
-        ws_max_size=LARGEST, ws_per_message_deflate=False, log_level="warning", access_log=False,
+        ws_max_size=LARGEST, ws_per_message_deflate=False, log_config=None, log_level="warning", access_log=False,
         timeout_graceful_shutdown=2, proxy_headers=False, lifespan="on",
     )  # fmt: skip
 

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import json
 import logging
+import math
+from collections import OrderedDict
 from datetime import UTC, datetime
+
+SELDOM = 60.0
+"""Seconds between two lines of the same kind."""
+REMEMBERED = 1000
+"""Kinds of lines."""
 
 
 class Json(logging.Formatter):
@@ -21,11 +28,34 @@ class Json(logging.Formatter):
         return json.dumps(said)
 
 
+class Seldom(logging.Filter):
+    """Lets what is said again and again pass once a minute, with how often it wasn't: a drag that fails fills no disk.
+
+    Lines are of a kind whose words, first argument (the sim, mostly) and exception are the same.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said: OrderedDict[object, tuple[float, int]] = OrderedDict()
+        """When a kind was said last, and how often it was left out since."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Whether the line is written."""
+        first = str(record.args[0]) if isinstance(record.args, tuple) and record.args else ""
+        kind = record.name, record.msg, first, record.exc_info[0] if record.exc_info else None
+        at, left_out = self._said.pop(kind, (-math.inf, 0))
+        passes = record.created - at >= SELDOM
+        self._said[kind] = (record.created, 0) if passes else (at, left_out + 1)
+        if len(self._said) > REMEMBERED:
+            self._said.popitem(last=False)
+        if passes and left_out:
+            record.msg = f"{record.msg} ({left_out} more like it before)"
+        return passes
+
+
 def begin(how: str) -> None:
     """Write the log to the standard error, as `text` or `json`."""
     handler = logging.StreamHandler()
     handler.setFormatter(Json() if how == "json" else logging.Formatter("%(levelname)s %(name)s: %(message)s"))
+    handler.addFilter(Seldom())
     logging.basicConfig(level=logging.INFO, handlers=[handler], force=True)
-    for name in ("uvicorn", "uvicorn.error"):
-        logging.getLogger(name).handlers.clear()
-        logging.getLogger(name).propagate = True

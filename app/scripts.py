@@ -12,9 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import nbformat
-from nbformat import v4
-
 from app.settings import ROOT
 from sims.kit.params import Params
 from sims.kit.sim import Sim
@@ -101,6 +98,9 @@ def _literal(value: Any) -> str:
 
 def notebook(text: str, title: str, link: str) -> str:
     """A script as a Jupyter notebook, under a heading and a link to the state."""
+    import nbformat  # takes long to load, and is needed seldom
+    from nbformat import v4
+
     doc, _, code = text.removeprefix('"""').partition('"""')
     parts = re.split(r"\n{2,}(?=# )", code.strip())
     cells = [v4.new_markdown_cell(f"# {title}\n\n{doc.strip()}\n\n[The sim in this state]({link})", id="about")]

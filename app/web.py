@@ -54,6 +54,16 @@ ROUTERS = (
 )  # fmt: skip
 
 
+class Application(FastAPI):
+    """What the API takes and answers is described by the sims."""
+
+    def openapi(self) -> dict[str, Any]:
+        """The schema, made once."""
+        if self.openapi_schema is None:
+            api.describe(super().openapi())
+        return super().openapi()
+
+
 def create_app(settings: Settings, host: ViserHost) -> FastAPI:
     """The application, bound to a running viser host."""
     services = _services(settings, host)
@@ -67,7 +77,7 @@ def create_app(settings: Settings, host: ViserHost) -> FastAPI:
         services.classes.close()
         services.answers.close()
 
-    app = FastAPI(
+    app = Application(
         title="Sim3", summary="Interactive 3D-geometry sims", version="1", lifespan=lifespan,
         docs_url=None, redoc_url=None, redirect_slashes=False, exception_handlers=HANDLERS,
     )  # fmt: skip

@@ -26,6 +26,14 @@ FIRST = -179
 HELLO = {"type": "hello", "dark": False, "reduced": False, "query": ""}
 
 
+def yaw_of(message: Message) -> int | None:
+    """To how many degrees a message turns the node that the slider turns; None where it does something else."""
+    if message["type"] != "SetOrientationMessage" or message["name"] != TURNED:
+        return None
+    w, _, _, z = message["wxyz"]
+    return round(math.degrees(2.0 * math.atan2(z, w)))
+
+
 class Learner:
     """One page in a room of its own."""
 
@@ -53,6 +61,11 @@ class Learner:
 
     async def open(self, *, within: float = 60.0) -> None:
         """Connect as the page does; returns when the controls and the first state have come."""
+        await self.connect()
+        await asyncio.wait_for(self._opened.wait(), within)
+
+    async def connect(self) -> None:
+        """The same, of any sim, without the wait."""
         viewer = secrets.token_hex(8)
         options: dict[str, Any] = {"compression": None, "max_size": None, "ping_interval": None}
         if "/s/" in self._url:
@@ -63,15 +76,14 @@ class Learner:
         self._viser = await self._stack.enter_async_context(viser_socket)
         await self._viser.send(encode_message(self._camera))
         self._tasks.append(asyncio.create_task(self._watch()))
-        await asyncio.wait_for(self._opened.wait(), within)
 
     async def _listen(self, channel: ClientConnection) -> None:
         await channel.send(json.dumps(HELLO))
 
         async def listen() -> None:
             with suppress(ConnectionClosed):
-                async for _ in channel:
-                    pass
+                async for message in channel:
+                    self._hear(message)
 
         self._tasks.append(asyncio.create_task(listen()))
 
@@ -81,13 +93,14 @@ class Learner:
                 if isinstance(frame, bytes):
                     self._look(frame, perf_counter())
 
+    def _hear(self, message: str | bytes) -> None:
+        """Take what the channel says."""
+
     def _look(self, frame: bytes, now: float) -> None:
         for message in decode_frame(frame):
-            kind = message["type"]
-            if kind == "SetOrientationMessage" and message["name"] == TURNED:
-                w, _, _, z = message["wxyz"]
-                self._see(round(math.degrees(2.0 * math.atan2(z, w))), now)
-            elif kind == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
+            if (yaw := yaw_of(message)) is not None:
+                self._see(yaw, now)
+            elif message["type"] == "GuiSliderMessage" and message["props"]["label"].startswith(SLIDER):
                 self._slider = message["uuid"]
 
     def _see(self, value: int, now: float) -> None:

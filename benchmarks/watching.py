@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.learner import FIRST, Learner
 from benchmarks.process import CORES, cpu_seconds
 from benchmarks.servers import Sim3
-from tests.frames import decode_frame, encode_message
+from tests.frames import encode_message
 from tests.server import camera_message
 
 RATE = 20.0
@@ -34,9 +34,8 @@ class Watcher(Learner):
     def watch(self, driver: Learner) -> None:
         self.values, self._index, self.sent = driver.values, driver._index, driver.sent
 
-    def _look(self, frame: bytes, now: float) -> None:
-        super()._look(frame, now)
-        self.views += any(message["type"] == "SetCameraPositionMessage" for message in decode_frame(frame))
+    def _hear(self, message: str | bytes) -> None:
+        self.views += '"type": "led"' in str(message)
 
 
 async def turn(driver: Learner, seconds: float) -> None:

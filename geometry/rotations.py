@@ -10,6 +10,7 @@ from .errors import GeometryError, as_angle, as_array, as_finite_array
 
 AXES = ("x", "y", "z")
 SMALLEST = 1e-300  # next to zero, where floats lose their precision
+SMALLEST_SINE = 1e-9  # of the angle between directions that have an axis across both
 TOLERANCE = 1e-6  # what rotations read from float32 or from printed matrices still meet
 
 _NEXT = {"x": (0, 1, 2), "y": (1, 2, 0), "z": (2, 0, 1)}
@@ -88,6 +89,20 @@ def axis_angle_to_matrix(axis: npt.ArrayLike, angle: float | Array) -> Array:
         *(xy + sin * z, cos + versine * y * y, yz - sin * x),
         *(zx - sin * y, yz + sin * x, cos + versine * z * z),
     )
+
+
+def shortest_turn(start: npt.ArrayLike, end: npt.ArrayLike) -> Array:
+    """The rotation by the smallest angle that takes one direction to another: (3,), (3,), of any length but zero.
+
+    Opposite directions have no such turn, for any axis across them would do: those stay where they are. Raises
+    GeometryError for a zero vector.
+    """
+    first, last = unit(start, "start"), unit(end, "end")
+    axis = np.cross(first, last)
+    sine = math.sqrt(axis @ axis)
+    if sine < SMALLEST_SINE:
+        return np.eye(3)
+    return axis_angle_to_matrix(axis / sine, math.atan2(sine, float(first @ last)))
 
 
 def matrix_to_axis_angle(R: npt.ArrayLike) -> tuple[Array, Array]:

@@ -17,6 +17,11 @@ from tests.server import PATIENCE, ROOT, Server, free_port, wait_for
 SETTINGS = {"SIM3_DRAIN_SECONDS": "2", "FORWARDED_ALLOW_IPS": "*"}
 
 
+def interpolated(text: str) -> str:
+    """As compose has it where no variable is set."""
+    return re.sub(r"\$\{\w+:-([^}]*)\}", r"\1", text)
+
+
 def configuration(port: int, servers: list[Server]) -> str:
     """What compose.yaml tells HAProxy, for servers of this machine."""
     compose = (ROOT / "compose.yaml").read_text()
@@ -26,6 +31,7 @@ def configuration(port: int, servers: list[Server]) -> str:
     text = re.sub(r"^resolvers docker\n(?:    .*\n)+", "", text, flags=re.M)
     text = text.replace("bind :8080", f"bind 127.0.0.1:{port}").replace("log stdout format raw local0 notice", "")
     text = text.replace("    log global\n", "")
+    text = interpolated(text)
     template = re.compile(r"^(\s*)server-template replica \d+ replica:8000 (.*) resolvers docker init-addr none$", re.M)
     found = template.findall(text)
     assert len(found) == 2, "two backends find their servers by a template"
@@ -38,10 +44,10 @@ def configuration(port: int, servers: list[Server]) -> str:
 
 
 class Replicas:
-    """Some servers and what balances them, while the context lasts."""
+    """Some servers and what balances them, while the context lasts; settings as keyword arguments."""
 
-    def __init__(self, folder: Path, count: int) -> None:
-        self.servers = [Server(**SETTINGS) for _ in range(count)]
+    def __init__(self, folder: Path, count: int, **settings: str) -> None:
+        self.servers = [Server(**SETTINGS, **settings) for _ in range(count)]
         self.port = free_port()
         self._folder = folder
         self._stack = ExitStack()
@@ -65,6 +71,8 @@ class Replicas:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        for server in self.servers:
+            server.send_end()  # they end beside each other
         self._stack.__exit__(kind, error, trace)
 
     def statuses(self) -> bool:

@@ -240,12 +240,12 @@ class Browser:
         self.send(camera_message())
         assert arrived.wait(PATIENCE), "viser didn't take the connection"
         self.client = clients[0]
-        self._commands = Commands(session, self._hear)
+        self.commands = Commands(session, self._hear)
         self.viewer = host.call(lambda: self._show(dark, watching))
 
     def _show(self, dark: bool, watching: bool) -> Viewer:
         session = self._session
-        viewer = Viewer(session.sim, self.client, self._commands, dark=dark, watching=watching)
+        viewer = Viewer(session.sim, self.client, self.commands, dark=dark, watching=watching)
         session.join(viewer)
         session.listen(self._hear)
         return viewer
@@ -281,14 +281,14 @@ class Browser:
         """Set an input by its name: a slider is moved, into anything else is typed, or chosen."""
         kind = self._session.params.kinds.get(name.partition(".")[0])
         if isinstance(kind, Slider | Numbers) or name in [dial.handle for dial in self._session.sim.dials]:
-            self._host.call(lambda: self._commands.slide(name, value))
+            self._host.call(lambda: self.commands.slide(name, value))
             return
         text = "" if value is None else spell(tuple(value) if isinstance(value, list) else value)
-        self._host.call(lambda: self._commands.enter(name, text))
+        self._host.call(lambda: self.commands.enter(name, text))
 
     def press(self, action: str) -> None:
         """Press a button, by its action's name."""
-        self._host.call(lambda: self._commands.act(action))
+        self._host.call(lambda: self.commands.act(action))
 
     @property
     def refused(self) -> list[str]:

@@ -45,6 +45,20 @@ def test_what_is_imported_when_the_sims_run_is_declared() -> None:
         assert {normal(d) for d in known.get(name, [name])} & allowed, f"{place} imports {name}, which isn't declared"
 
 
+def test_the_image_holds_what_the_server_reads() -> None:
+    """`ROOT / "name"` in what runs is a file or folder of the checkout; .dockerignore says which are in the image."""
+    held = {line[1:] for line in (ROOT / ".dockerignore").read_text("utf-8").splitlines() if line.startswith("!")}
+    read = {
+        str(node.right.value): f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path in sources("geometry", "sims", "app")
+        for node in ast.walk(parse(path))
+        if isinstance(node, ast.BinOp) and isinstance(node.left, ast.Name) and node.left.id == "ROOT"
+        if isinstance(node.right, ast.Constant) and isinstance(node.right.value, str)
+    }
+    assert "pyproject.toml" in read
+    assert {*read} <= held, f"not in the image: {[f'{name} ({read[name]})' for name in {*read} - held]}"
+
+
 def test_a_foreign_plugin_of_pytest_does_not_hurt(tmp_path: Path) -> None:
     foreign = tmp_path / "foreign-1.0.dist-info"
     foreign.mkdir()

@@ -27,7 +27,7 @@ MAY_USE_PRIVATE_NAMES = {
     "tests/sims/test_viser_internals.py",
     "tests/sims/test_outbox.py",
 }
-PUBLIC_ALL_THE_SAME = {"_asdict", "_fields", "_make", "_replace"}
+PUBLIC_ALL_THE_SAME = {"_asdict", "_exit", "_fields", "_make", "_replace"}
 
 
 def sources(*folders: str) -> list[Path]:

@@ -11,7 +11,7 @@ from typing import Any
 from app.classes.animals import animal
 from app.classes.subject import Subject
 from app.rooms.places import Full
-from app.rooms.telling import Listener, Message
+from app.rooms.telling import Listener, Message, Shared
 from sims.kit.challenge import checked
 from sims.kit.params import Params
 from sims.kit.sim import Sim
@@ -190,9 +190,10 @@ class Class:
     # ---- what is told
 
     def _tell_learners(self, message: Message) -> None:
+        shared = Shared(message)
         for learner in self.learners.values():
             if learner.tell is not None:
-                learner.tell(message)
+                learner.tell(shared)
 
     def _tell_teachers(self, message: Message) -> None:
         for teacher in self.teachers:

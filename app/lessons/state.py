@@ -18,6 +18,7 @@ from sims.kit.controls import letters, unit_of
 from sims.kit.fields import Vector
 from sims.kit.fields.numbers import Several
 from sims.kit.params import Params
+from sims.kit.progress import Superseded, goes_on
 from sims.kit.readout import figure, quantity
 from sims.kit.refusals import BadParams
 from sims.kit.sim import Library, Sim, jsonable
@@ -157,9 +158,15 @@ def named(sim: AnySim, query: str, library: tuple[Library, ...] = ()) -> State:
 
 
 def solved(state: State) -> State:
-    """The state itself: what has no solution isn't one of a lesson. Raises LookupError in words."""
+    """The state itself: what has no solution isn't one of a lesson.
+
+    Raises LookupError in words; `Superseded` where a server ends that reads ahead.
+    """
+    goes_on()
     try:
         state.solution  # noqa: B018 it is kept
+    except Superseded:
+        raise
     except GeometryError as error:
         raise LookupError(f"for {error.argument}: {error.allowed}") from None
     except Exception as error:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import time
-from contextlib import suppress
 from hmac import compare_digest
 from typing import Protocol
 
 from app.rooms.keys import new_key
-from app.rooms.telling import Listener, Message
-from geometry import GeometryError
+from app.rooms.telling import Listener, Message, Shared
 from sims.kit.scene.view import Seen
 from sims.kit.viewer import Viewer
 
 VIEW_INTERVAL = 0.1
-"""Seconds between two viewpoints that are handed on: the newest wins."""
+"""Seconds between two viewpoints that are handed on: the newest wins, and pages glide from each to the next."""
 
 
 class Guest(Protocol):
@@ -93,7 +91,7 @@ class Audience:
         if guest not in self._told:
             return
         if self._follows(guest):
-            if before is None or before.aspect != seen.aspect:
+            if before is None:  # a scene that has just begun, by its own view
                 self.show(guest)
         elif not guest.watching and (self._leader in (None, guest) or before not in (None, seen)):
             self._lead(guest)
@@ -108,13 +106,15 @@ class Audience:
             self.show(guest)
 
     def show(self, guest: Guest) -> None:
-        """Have a page look from where it is led, if it is."""
-        leader = self._leader
-        if guest.viewer is None or guest.seen is None or leader is None or leader.seen is None:
-            return
-        if self._follows(guest):
-            with suppress(GeometryError):  # farther away than a page may look from
-                guest.viewer.look_from(leader.seen.through(guest.seen.aspect))
+        """Tell a page from where it is led to look, if it is."""
+        if (led := self._led()) is not None and self._follows(guest):
+            guest.tell(led)
+
+    def _led(self) -> Message | None:
+        """What those who follow are told, who see the same through pages of other shapes."""
+        if self._leader is None or (seen := self._leader.seen) is None:
+            return None
+        return Shared(type="led", view=[*seen.position, *seen.look_at], aspect=seen.aspect)
 
     def _follows(self, guest: Guest) -> bool:
         """Those who share a room's key each have their own view, as long as nothing is handed over."""
@@ -135,8 +135,9 @@ class Audience:
     def _show_all(self) -> None:
         self._waiting = None
         self._shown_at = time.monotonic()
-        for guest in list(self._told):
-            self.show(guest)
+        if (led := self._led()) is not None:
+            for guest in [each for each in self._told if self._follows(each)]:
+                guest.tell(led)
 
     # ---- parts
 

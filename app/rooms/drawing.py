@@ -24,6 +24,7 @@ PATIENCE = 0.2
 """Seconds that a solve in the pool goes on for while a newer state waits."""
 LONG, REPORTED_EVERY = 0.4, 0.2
 """Seconds without a drawing from which on pages are told how far the work is, and between two such messages."""
+BROKEN = {"type": "error", "message": "This state can’t be drawn; the server’s log says why.", "errors": []}
 WORK_ENDED = {"type": "work", "text": "", "done": None, "cancel": False}
 
 
@@ -62,6 +63,8 @@ class Drawing:
         self._latency = metrics.LATENCY.labels(sim.slug)
         self._solving = metrics.SOLVING.labels(sim.slug)
         self._coalesced = metrics.COALESCED.labels(sim.slug)
+        for what in ("solve", "draw"):  # at 0, or the first one would not be seen as an increase
+            metrics.FAILURES.labels(sim.slug, what)
         self.words = ""
         """What a motion says, in place of the caption."""
 
@@ -114,8 +117,7 @@ class Drawing:
                 self._latency.observe(self._drawn_at - asked_at)
                 self._telling.tell_state_soon()
         except Exception:
-            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
-            log.exception("drawing %s failed in the state %s", self.sim.slug, self.solved.query())
+            self._broke()
         finally:
             self.task = None
             if reporting is not None:
@@ -160,8 +162,13 @@ class Drawing:
         try:
             viewer.draw(self.solved, self.solution, self.version)
         except Exception:
-            metrics.FAILURES.labels(self.sim.slug, "draw").inc()
-            log.exception("drawing %s for a viewer failed in the state %s", self.sim.slug, self.solved.query())
+            self._broke()
+
+    def _broke(self) -> None:
+        """Count, log and tell that a state can't be drawn; the session goes on."""
+        metrics.FAILURES.labels(self.sim.slug, "draw").inc()
+        log.exception("drawing %s failed in the state %s", self.sim.slug, self.solved.query())
+        self._telling.tell(BROKEN)
 
     @property
     def before(self) -> Params:

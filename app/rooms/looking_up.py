@@ -1,4 +1,4 @@
-"""What a heavy sim's buttons, handles and clicks mean is found out in the pool."""
+"""What a heavy sim's buttons, handles, clicks and pointers mean is found out in the pool."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ MOST = 32
 
 
 class LookingUp:
-    """One thing is found out at a time, in a session's `turn`. Each press of a button counts, of places the last."""
+    """One thing is found out at a time, in a session's `turn`. Each press of a button counts, of all else the last."""
 
     def __init__(self, solver: Solver, turn: asyncio.Lock, failed: Callable[[Exception], None]) -> None:
         self._solver = solver
         self._turn = turn
         self._failed = failed
-        self._asked: deque[tuple[Callable[[], Any], Callable[[Any], None], bool]] = deque(maxlen=MOST)
+        self._asked: deque[tuple[Callable[[], Any], Callable[[Any], None], str]] = deque(maxlen=MOST)
         self.task: asyncio.Task[None] | None = None
         """As long as something is asked."""
 
-    def ask(self, find: Callable[[], Any], take: Callable[[Any], None], *, place: bool) -> None:
-        """Have something found in the pool, and taken on the event loop. A `place` takes that of one that waits."""
-        if place and self._asked and self._asked[-1][2]:
+    def ask(self, find: Callable[[], Any], take: Callable[[Any], None], kind: str = "") -> None:
+        """Have something found in the pool, and taken on the event loop; in place of one of its kind that waits."""
+        if kind and self._asked and self._asked[-1][2] == kind:
             self._asked.pop()
-        self._asked.append((find, take, place))
+        self._asked.append((find, take, kind))
         if self.task is None:
             self.task = asyncio.get_running_loop().create_task(self._find())
 

@@ -14,6 +14,7 @@ from app.rooms.session import Session
 from app.rooms.solver import ROOM, Solver, workers
 from sims.kit import child
 from sims.kit.params import Params
+from sims.kit.progress import Work, at_work
 from sims.kit.sim import Library, Sim
 
 LOADING = 10.0
@@ -51,6 +52,7 @@ class Sessions:
         self.aside = workers("aside", 1)
         """Reads files and answers the API, one thing at a time however long it takes, beside what solves."""
         self._ahead = workers("ahead", 1)
+        self._closed = False
         self._begun: set[str] = set()
         """Names of the work ahead that has begun."""
 
@@ -110,7 +112,11 @@ class Sessions:
         self._begun.add(name)
         with suppress(RuntimeError):  # the server ends already
             for piece in pieces:
-                self._ahead.submit(piece)
+                self._ahead.submit(self._do_ahead, piece)
+
+    def _do_ahead(self, piece: Callable[[], object]) -> None:
+        at_work.set(Work(lambda: not self._closed))  # this thread does nothing else
+        piece()
 
     def _drop_one(self) -> None:
         """Make room: forget the session that nobody has looked at for longest. Raises `Full` if all are in use.
@@ -153,6 +159,12 @@ class Sessions:
             found.setdefault(slug, []).append(session)
         return found
 
+    def drain(self) -> None:
+        """The server ends soon: it takes no new rooms, and pages know the newest state, to go on from it elsewhere."""
+        self.draining = True
+        for session in self._by_room.values():
+            session.telling.hurry()
+
     async def close(self) -> None:
         """End the sessions, the pools, and the processes that read files."""
         if self._sweeping is not None:
@@ -160,6 +172,7 @@ class Sessions:
         working = [task for session in self._by_room.values() for task in session.end()]
         await asyncio.gather(*working, return_exceptions=True)
         child.stop()
+        self._closed = True
         self.aside.shutdown(wait=False, cancel_futures=True)
         # A piece that has begun is waited for here: the interpreter would wait as well, but refuse it its threads.
         await asyncio.to_thread(self._ahead.shutdown, cancel_futures=True)

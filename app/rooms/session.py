@@ -184,7 +184,7 @@ class Session:
     ) -> None:
         if (held := known.get(name)) is None:
             raise Unknown(kind, name, known)
-        self._find(lambda: held(self.params, place, *self.given), self.change, place=True)
+        self._find(lambda: held(self.params, place, *self.given), self.change, "place")
 
     def select(self, name: str) -> None:
         """Select what is linked under a name; nothing happens where that can't be selected."""
@@ -205,7 +205,7 @@ class Session:
         if isgeneratorfunction(action.run):  # a motion, whose steps are found as it goes
             self.motion.begin(action.run(self.params, *self.given))
         else:
-            self._find(lambda: action.run(self.params, *self.given), self._take, place=False)
+            self._find(lambda: action.run(self.params, *self.given), self._take)
 
     def _take(self, result: Mapping[str, Any] | Iterator[Step]) -> None:
         """Take what an action leads to."""
@@ -214,9 +214,9 @@ class Session:
         else:
             self.motion.begin(result)
 
-    def _find(self, find: Callable[[], Any], take: Callable[[Any], None], *, place: bool) -> None:
+    def _find(self, find: Callable[[], Any], take: Callable[[Any], None], kind: str = "") -> None:
         if self.sim.heavy:
-            self._looking_up.ask(find, take, place=place)
+            self._looking_up.ask(find, take, kind)
         else:
             take(find())
 
@@ -284,6 +284,21 @@ class Session:
     def hover(self, name: str, by: Listener | None = None) -> None:
         """Highlight for everybody what somebody hovers over in a picture or table; an empty name is nothing."""
         self._highlight.show(name, self.drawing.viewers, by)
+
+    def pass_over(self, ray: tuple[float, ...] | None, shown: Callable[[], None]) -> None:
+        """Show everybody what is under a pointer: the origin and direction of its ray, or None where it has left.
+
+        `shown` hears when that is done.
+        """
+        under, params = self.sim.under, self.params
+
+        def show(found: object) -> None:
+            for viewer in list(self.drawing.viewers) if self.drawing.solved is params else ():
+                viewer.under(found)
+            shown()
+
+        if under is not None:
+            self._find(lambda: None if ray is None else under(params, ray, *self.given), show, "pointer")
 
     def join(self, viewer: Viewer) -> None:
         """Add a viewer and show it the present state."""

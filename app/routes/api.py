@@ -218,14 +218,22 @@ def _add_solve(sim: AnySim) -> None:
 
     solve.__name__ = f"solve_{sim.slug.replace('-', '_')}"
     solve.__doc__ = f"Solve {sim.title} for some parameters; what is left out is at its default."
-    router.post(
-        f"/api/sims/{sim.slug}/solve", tags=["solve"], response_class=Response,
-        openapi_extra={"requestBody": {"content": {"application/json": {"schema": sim.params.model_json_schema()}}}},
-        responses=_responses(sim),
-    )(solve)  # fmt: skip
+    router.post(_solve_path(sim), tags=["solve"], response_class=Response)(solve)
 
 
-def _responses(sim: AnySim) -> dict[int | str, dict[str, Any]]:
+def _solve_path(sim: AnySim) -> str:
+    return f"/api/sims/{sim.slug}/solve"
+
+
+def describe(schema: Mapping[str, Any]) -> None:
+    """Put into an OpenAPI schema what each sim takes and answers: found out when it is asked for, not at each start."""
+    for sim in SIMS:
+        operation = schema["paths"][_solve_path(sim)]["post"]
+        operation["requestBody"] = {"content": {"application/json": {"schema": sim.params.model_json_schema()}}}
+        operation["responses"] = _responses(sim)
+
+
+def _responses(sim: AnySim) -> dict[str, dict[str, Any]]:
     schemas = {"params": sim.params.model_json_schema(mode="serialization"), "solution": solution_schema(solved(sim))}
     answer = {"type": "object", "properties": schemas, "required": list(schemas), "additionalProperties": False}
     text = {"type": "string"}
@@ -233,11 +241,11 @@ def _responses(sim: AnySim) -> dict[int | str, dict[str, Any]]:
     item = {"type": "object", "properties": {**fields, "input": {}}, "required": [*fields, "input"]}
     detail = {"type": "object", "properties": {"detail": {"type": "array", "items": item}}}
     return {
-        200: _response("The state, and what follows from it", answer),
-        415: _response("The body isn't JSON"),
-        422: _response("What is wrong, parameter by parameter", detail),
-        429: _response("This address waits for too many long answers already"),
-        503: _response("The server has too much to do, or this took too long"),
+        "200": _response("The state, and what follows from it", answer),
+        "415": _response("The body isn't JSON"),
+        "422": _response("What is wrong, parameter by parameter", detail),
+        "429": _response("This address waits for too many long answers already"),
+        "503": _response("The server has too much to do, or this took too long"),
     }
 
 

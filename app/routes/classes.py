@@ -92,6 +92,7 @@ async def begin(request: Request, given: Given) -> Response:
     except ValueError:
         return _form(request, given, "", "", "", "Choose a lesson or a sim.", 422)
     except Full as full:
+        given.bridge.refusals["full"] += 1
         raise HTTPException(503, str(full), {"retry-after": str(full.wait)}) from None
     address = links.spelled({"page": subject.page, **dict(parse_qsl(subject.query, keep_blank_values=True))})
     return RedirectResponse(f"{rendering.base(request)}/class/{code}/{key}/?{address}", 303, NEVER_KEPT)

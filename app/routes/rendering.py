@@ -111,6 +111,7 @@ def viewer(
         "slug": sim.slug, "title": sim.title, "watching": not key,
         "text": f"{place}/text", "path": path, "address": f"{place}/embed" if key else path,
         "view": [*view.position, *view.look_at], "radius": view.radius, "field": FIELD,
+        "under": sim.under is not None,
         "code": f"{place}/code" if scripts.script(sim, "numpy") else "",
         "files": None if sim.files is None else {"largest": largest},
         "steps": steps,

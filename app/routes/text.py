@@ -50,7 +50,8 @@ async def text(request: Request, given: Given, slug: str) -> Response:
     except GeometryError as error:
         raise refusal_of(params, error) from None
     form = list(_fields(sim, params, library))
-    return rendering.render(request, "text.html", sim=sim, form=form, query=links.own(items), **shown)
+    kept = {name: text for name, text in params.query_items().items() if params.kinds[name].hidden}
+    return rendering.render(request, "text.html", sim=sim, form=form, kept=kept, query=links.own(items), **shown)
 
 
 def _finding(sim: Sim[Any, Any], params: Params, library: tuple[Library, ...]) -> Callable[[], dict[str, Any]]:

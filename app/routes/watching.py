@@ -47,6 +47,7 @@ def _by_sim(given: Services) -> dict[str, tuple[int, int]]:
 def _single(given: Services) -> dict[str, tuple[str, float]]:
     return {
         "sim3_pages": ("Pages that are open", len(given.bridge.visits)),
+        "sim3_classes": ("Classes that are open", len(given.classes)),
         "sim3_session_limit": ("Sessions that may be open at once", given.sessions.limit),
         "sim3_uploaded_bytes": ("Bytes of learners' files that sessions keep", given.sessions.uploaded_bytes()),
         "sim3_solved_bytes": ("Bytes of solutions that take long", given.sessions.solved_bytes()),

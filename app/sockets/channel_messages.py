@@ -65,6 +65,12 @@ class Hover(msgspec.Struct, tag="point", tag_field="type", forbid_unknown_fields
     name: Annotated[str, msgspec.Meta(max_length=100)]
 
 
+class Over(msgspec.Struct, tag="over", tag_field="type", forbid_unknown_fields=True):
+    """The pointer passes over the scene: origin and direction of its ray, or nothing where it has left."""
+
+    ray: tuple[Number, Number, Number, Number, Number, Number] | None
+
+
 class Select(msgspec.Struct, tag="select", tag_field="type", forbid_unknown_fields=True):
     """A click on something that is linked."""
 
@@ -100,5 +106,5 @@ class Get(msgspec.Struct, tag="get", tag_field="type", forbid_unknown_fields=Tru
 
 
 decoder = msgspec.json.Decoder(
-    Hello | Slide | Enter | Handle | Set | Act | Hover | Select | Cancel | Follow | Lend | Get | View
+    Hello | Slide | Enter | Handle | Set | Act | Hover | Over | Select | Cancel | Follow | Lend | Get | View
 )

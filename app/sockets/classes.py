@@ -15,7 +15,7 @@ from app.classes.registry import Classes, Wrong
 from app.classes.subject import Subject
 from app.proxies import address_of
 from app.rooms.places import Full
-from app.rooms.telling import Listener
+from app.rooms.telling import Listener, encode
 from app.sockets.class_messages import (
     Answer,
     Ask,
@@ -30,7 +30,7 @@ from app.sockets.class_messages import (
     teacher_decoder,
 )
 from app.sockets.inbox import Decoder, Ended, Inbox, Strangers
-from app.sockets.outgoing import Outgoing, encode
+from app.sockets.outgoing import Outgoing
 from app.sockets.visits import Visits, close
 from app.values import strict
 from sims.kit.params import Params

@@ -75,6 +75,10 @@ class Commands:
         """Take a click on a node of the scene: the origin and direction of its ray."""
         self.attempt(self._session.click, name, ray)
 
+    def pass_over(self, ray: tuple[float, ...] | None) -> None:
+        """Show what is under the pointer; the page hears when that is done, and says where it is by then."""
+        self.attempt(self._session.pass_over, ray, lambda: self._answer({"type": "over"}))
+
     def hold(self, name: str, pixel: tuple[float, float]) -> None:
         """Take the place where a handle in a picture was dragged to; those of the scene have names with a slash."""
         self.attempt(self._hold, name, pixel)

@@ -3,43 +3,37 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from collections import deque
-from typing import Any
+from collections.abc import Callable, Mapping
 
 from starlette.websockets import WebSocket
 
 from app.rooms.showing import merged
-from sims.kit.sim import jsonable
+from app.rooms.telling import Message, Shared, encode
 
 MOST_WAITING = 32
 """Messages that wait for a page that reads slowly; from then on the oldest is dropped."""
-
-
-def encode(message: dict[str, Any]) -> str:
-    """A message as JSON in ASCII: whatever a sim or a stranger put into it, it can be sent."""
-    return json.dumps(jsonable(message), allow_nan=False)
+AS_ONE: Mapping[str, Callable[[Message, Message], Message]] = {"show": merged, "led": lambda older, newer: newer}
+"""Kinds of which one waits, whatever has changed meanwhile: of an older and a newer one, what is sent."""
 
 
 class Outgoing:
-    """The messages to one page. What it is to show waits as one message, however much has changed meanwhile."""
+    """The messages to one page."""
 
     def __init__(self, ws: WebSocket) -> None:
         self._ws = ws
-        self._waiting: deque[dict[str, Any]] = deque()
-        self._show: dict[str, Any] | None = None
-        """The one among those that says what the page is to show."""
+        self._waiting: deque[Message] = deque()
         self._arrived = asyncio.Event()
 
-    def put(self, message: dict[str, Any]) -> None:
+    def put(self, message: Message) -> None:
         """Have a message sent."""
-        if message["type"] == "show":
-            if self._show is not None:
-                self._show |= merged(self._show, message)
-                return
-            self._show = message = {**message}
+        kind = message["type"]
+        at = next((k for k, each in enumerate(self._waiting) if each["type"] == kind in AS_ONE), None)
+        if at is not None:
+            self._waiting[at] = AS_ONE[kind](self._waiting[at], message)
+            return
         if len(self._waiting) >= MOST_WAITING:
-            self._waiting.remove(next(each for each in self._waiting if each is not self._show))
+            self._waiting.remove(next(each for each in self._waiting if each["type"] != "show"))
         self._waiting.append(message)
         self._arrived.set()
 
@@ -50,6 +44,4 @@ class Outgoing:
             self._arrived.clear()
             while self._waiting:
                 message = self._waiting.popleft()
-                if message is self._show:
-                    self._show = None
-                await self._ws.send_text(encode(message))
+                await self._ws.send_text(message.text if isinstance(message, Shared) else encode(message))

@@ -33,7 +33,7 @@ def caption(p: CameraParams, s: CameraSolution) -> str:
         metre = f"A metre is {quantity(s.scale, 'px', 0)}"
         mean = s.scale_depth and quantity(s.scale_depth, "m", 2)
         return f"{metre} everywhere: fx over the mean depth, {mean}." if mean else f"{metre}, near and far: move back."
-    return "Move, turn or zoom: see which numbers change."
+    return "Pull the camera, turn it or zoom: see which numbers change."
 
 
 def readouts(p: CameraParams, s: CameraSolution) -> Iterator[Readout]:

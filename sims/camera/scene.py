@@ -60,6 +60,7 @@ class CameraScene:
         self.stand = stage.lines("/stand", "ghost", width=1.2)
         self.eye = stage.grip("/eye", GRIP)
         self.look = stage.grip("/look", GRIP)
+        stage.carried_by(self.camera.figure.solids, "/eye", self.eye)
         self.hints = [stage.label(f"/{name}/hint", words, (0.0, 0.0, 0.2)) for name, words in HINTS.items()]
         self.through = False
 

@@ -16,6 +16,7 @@ from sims.epipolar.scene import SIDE_BY_SIDE, EpipolarScene, seen, view_of
 from sims.epipolar.solution import EpipolarSolution, solve
 from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Dial, Objective, Sim
+from sims.kit.stereo_text import ENDINGS, read
 
 __all__ = ["CONTRACT", "SIM", "EpipolarParams", "EpipolarSolution", "solve"]
 
@@ -83,14 +84,13 @@ SIM = Sim(
     },
     paste=Paste(
         OWN, "Calibration of two cameras", "K1, K2, R and T as OpenCV, Kalibr’s camchain, or both ROS files have them",
-        calibration.EXAMPLE, calibration.read, calibration.changes, (".yaml", ".yml", ".json", ".xml", ".txt"),
-        calibration.says,
+        calibration.EXAMPLE, read, calibration.changes, ENDINGS, calibration.says,
     ),
     offers=EpipolarOffers,
     challenges=CHALLENGES,
     states={
         "own pair": {
-            **calibration.changes(EpipolarParams(), calibration.read(calibration.EXAMPLE)),
+            **calibration.changes(EpipolarParams(), read(calibration.EXAMPLE)),
             "own_left": (300.0, 200.0), "show_all_lines": True,
         },
         "converging": {**actions.PRESETS["converging"], "show_all_lines": True, "points": 12},

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from sims.epipolar import ray
-from sims.epipolar.eye import camera, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import ENOUGH, LAST_SEED, LEFT, POINT, RIGHT, SIGHT, EpipolarParams, Side
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.scale import Scale
 from sims.kit.sim import Step
 from sims.kit.spelling import plain
+from sims.kit.stereo import camera
 
 PRESETS: dict[str, dict[str, Any]] = {
     "rectified": {"left": LEFT, "right": RIGHT, "left_pan": 0.0, "right_pan": 0.0},

@@ -12,11 +12,12 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.epipolar import epipolar_residual
 from geometry.triangulation import Status, triangulate_midpoint
-from sims.epipolar.eye import camera, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import EpipolarParams, Pixel, Place
 from sims.epipolar.rig import Pair, existing, right_line
 from sims.kit.scale import Scale
 from sims.kit.sim import Step
+from sims.kit.stereo import camera
 from sims.kit.types import Segment
 
 ON_LINE = 0.5

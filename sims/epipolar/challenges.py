@@ -8,12 +8,13 @@ import numpy as np
 
 from geometry.epipolar import epipolar_line_left, epipolar_line_right
 from sims.epipolar.actions import PRESETS
-from sims.epipolar.eye import Eye, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import POINT, EpipolarParams, Pixel
 from sims.epipolar.rig import pair
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.challenge import Challenge, Progress, nearer
 from sims.kit.readout import quantity
+from sims.kit.stereo import Eye
 
 HIGHER = 0.2
 """Metres between the heights of two cameras whose lines aren't level."""

@@ -11,9 +11,9 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.camera import Camera
-from sims.epipolar.eye import Eye, orientation
 from sims.epipolar.params import Pixel, Place
 from sims.kit.frame import across
+from sims.kit.stereo import Eye, orientation
 
 PICTURE_WIDTH = 0.9
 """Metres that a picture is wide where it stands in the scene, when there is room."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ from sims.epipolar.eye import BASELINE
 from sims.epipolar.params import EpipolarParams, Pixel
 from sims.epipolar.rig import Pair, existing_line
 from sims.kit.readout import THIN, Formula, Note, Readout, figure, mathml, quantity, row, significant, spelled, symbol
+from sims.kit.stereo import length, turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ def own(p: EpipolarParams, both: Pair) -> OwnPair | None:
     line = existing_line(epipolar_line_right(both.F, left))
     return OwnPair(
         both.F, both.E, both.epipole_left_pixel, both.epipole_right_pixel,
-        math.hypot(*p.pair[11:]), math.hypot(*p.pair[8:11]), line,
+        length(p.pair), turned(p.pair), line,
         float(epipolar_residual(both.F, left, right)),
         None if line is None else float(line @ [*right, 1.0]),
     )  # fmt: skip

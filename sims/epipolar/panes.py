@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Array
 from sims.epipolar import numbers
 from sims.epipolar.candidate import Candidate
-from sims.epipolar.eye import Eye, camera, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import WORLD, EpipolarParams, Pixel, Side, title
 from sims.epipolar.plan import plan
 from sims.epipolar.ray import Trail
@@ -19,6 +19,7 @@ from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
 from sims.kit.scale import Scale
+from sims.kit.stereo import Eye, camera
 from sims.kit.world_drawing import draw_in_picture
 
 FIRST = "1"

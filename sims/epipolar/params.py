@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -14,19 +13,14 @@ from sims.kit.fields import NumberBox, Slider, Switch, Text, Vector
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params
 from sims.kit.refusals import refusal
+from sims.kit.stereo import LARGEST, Own, OwnPair, OwnSizes, Size, sizes, usable
 from sims.kit.world import PLACES, TITLES
 
 Pixel = tuple[float, float]
 Place = tuple[float, float, float]
-Size = tuple[int, int]
 Side = Literal["left", "right"]
-Own = tuple[float, float, float, float, float, float, float, float, float, float, float, float, float, float]
 CENTER: Pixel = (320.0, 240.0)
 """Principal point of both of the sim’s own cameras."""
-SMALLEST, LARGEST = 16, 8192
-"""Pixels that a picture has, across and down."""
-SHORTEST, CLOSEST = 1.0, 1e-9
-"""Pixels of focal length, and length of T, that somebody’s pair has at least."""
 LAST_SEED = 9999
 LEFT: Place = (-0.6, 0.0, 1.0)
 RIGHT: Place = (0.6, 0.0, 1.0)
@@ -96,12 +90,9 @@ class EpipolarParams(Params):
         None
     )
     """A pixel of the right picture, q′, that is tried as the partner of p"""
-    own: Annotated[Own | None, Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True)] = None
+    own: OwnPair = None
     """Both calibrations: fx, fy, cx, cy of the left and the right camera, the rotation vector in degrees, and T"""
-    own_size: Annotated[
-        tuple[int, int, int, int] | None,
-        Vector(SMALLEST, LARGEST, step=1, unit="px", title="Sizes of your pictures", hidden=True),
-    ] = None
+    own_size: OwnSizes = None
     """Width and height of your left and of your right picture; absent: twice as far as their principal points are"""
     left_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Left camera of the text", group=OWN)] = 1
     """Which one is the left one, where a text has more than two: the first is 1. Choose before you take the text"""
@@ -125,10 +116,7 @@ class EpipolarParams(Params):
     @property
     def pair(self) -> Own | None:
         """Somebody’s pair, if it has focal lengths and a baseline: then its cameras stand in place of the sim’s."""
-        own = self.own
-        if own is None or min(own[:2] + own[4:6]) < SHORTEST or math.hypot(*own[11:]) < CLOSEST:
-            return None
-        return own
+        return usable(self.own)
 
     @property
     def typed(self) -> bool:
@@ -140,10 +128,7 @@ class EpipolarParams(Params):
         """Pixels of the left and of the right picture, across and down."""
         if self.pair is None:
             return (WIDTH, HEIGHT), (WIDTH, HEIGHT)
-        if self.own_size is not None:
-            return self.own_size[:2], self.own_size[2:]
-        a, b, c, d = (min(max(round(2.0 * self.pair[k] + 1.0), SMALLEST), LARGEST) for k in (2, 3, 6, 7))
-        return (a, b), (c, d)
+        return sizes(self.pair, self.own_size)
 
     def ranges(self, name: str) -> Sequence[tuple[float, float]]:
         if name == "candidate":

@@ -7,11 +7,12 @@ from functools import lru_cache
 from typing import Any
 
 from sims.epipolar.drawing import CameraDrawing, distance
-from sims.epipolar.eye import Eye, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Side, title
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import figure
+from sims.kit.stereo import Eye
 
 WIDTH, HEIGHT = 640, 340
 SCALE = 33.0

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Array
-from sims.epipolar.eye import camera, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import EpipolarParams, Pixel, Place
 from sims.epipolar.rig import Pair
 from sims.kit.sim import Step
+from sims.kit.stereo import camera
 from sims.kit.types import Segment
 
 LEAST = 1e-6

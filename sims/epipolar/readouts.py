@@ -8,7 +8,7 @@ from functools import lru_cache
 from sims.epipolar.candidate import Candidate
 from sims.epipolar.estimate import readouts as estimate_readouts
 from sims.epipolar.own import readouts as own_readouts
-from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel, Size
+from sims.epipolar.params import ESTIMATE, OTHERS, OWN, EpipolarParams, Pixel
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.frame import inside
 from sims.kit.readout import (
@@ -25,6 +25,7 @@ from sims.kit.readout import (
     spelled,
     symbol,
 )
+from sims.kit.stereo import Size
 
 MATRICES, LINES, POINTS = "F and E", "Pixels, lines and epipoles", "All points"
 RIGHT_PIXEL = "<msup><mi>p</mi><mo>′</mo></msup>"

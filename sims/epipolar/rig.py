@@ -13,8 +13,9 @@ from geometry.arrays import Array
 from geometry.camera import Camera
 from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipole_pixel, epipoles, essential, normalize
 from sims.epipolar.drawing import Segments, chords, distance, drawn_size, spots
-from sims.epipolar.eye import Eye, camera, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.params import OTHERS, EpipolarParams, Pixel
+from sims.kit.stereo import Eye, camera
 
 RANK_TOLERANCE = 1e-12
 

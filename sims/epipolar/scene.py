@@ -62,6 +62,8 @@ class EpipolarScene:
             ball.pose(position=place)
             stage.link(ball, f"{k}")
         self.grips = [stage.grip(f"/{name}_center", 0.1, halo=1.9) for name in ("left", "right")]
+        for name, camera, grip in zip(("left", "right"), self.cameras, self.grips, strict=True):
+            stage.carried_by(camera.figure.solids, f"/{name}_center", grip)
         self.held = stage.grip("/point", 0.06, halo=2.4)
         stage.link(self.held, "1")
         stage.label("/point/label", "P", (0.0, 0.0, 0.26))

@@ -12,11 +12,12 @@ from geometry.epipolar import epipolar_line_left, epipolar_line_right, epipolar_
 from sims.epipolar.candidate import Candidate, candidate
 from sims.epipolar.drawing import Drawing, Segment, camera_drawing, drawn_size, plane
 from sims.epipolar.estimate import Estimate, estimate
-from sims.epipolar.eye import Eye, eyes
+from sims.epipolar.eye import eyes
 from sims.epipolar.own import OwnPair, own
-from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, Size, read_pick
+from sims.epipolar.params import OTHERS, EpipolarParams, Pixel, Place, Side, read_pick
 from sims.epipolar.ray import Trail, trail
 from sims.epipolar.rig import Pair, Views, existing, existing_line, other_drawings, pair, views
+from sims.kit.stereo import Eye, Size
 
 EXACT = 1e-9
 """Angle, in radians, below which the 3D point counts as being on the baseline."""

@@ -8,20 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.rotations import axis_angle_to_matrix
+from geometry.rotations import shortest_turn
 from sims.euler_angles.names import PLACES
 from sims.euler_angles.params import EulerParams
 from sims.euler_angles.solution import arc_frames, solve, triple_of
 from sims.kit.sim import Step
 from sims.kit.types import Place
 
-Handle = Callable[[EulerParams, Place], Mapping[str, Any]]
+Handle = Callable[[EulerParams, tuple[float, ...]], Mapping[str, Any]]
 LEAST = 1e-6
 """Metres within which a place doesn't say a direction."""
 ARCS = ("/held_first", "/held_second", "/held_third")
-BODY = {"/held_nose": 0, "/held_wing": 1}
-"""Columns of R that nose and left wing point along."""
+BODY = {"/held_nose": (1.0, 0.0, 0.0), "/held_wing": (0.0, 1.0, 0.0)}
+"""Where nose and left wing are on the aircraft."""
+WHOLE = "/aircraft"
+"""The aircraft, wherever it is taken."""
 
 
 def animate(p: EulerParams) -> Iterator[Step]:
@@ -42,7 +43,7 @@ def turn_words(p: EulerParams, k: int) -> str:
 def arc(k: int) -> Handle:
     """The end of the k-th arc was led to a place in the world: the turn goes as far, at most half round at once."""
 
-    def pull(p: EulerParams, place: Place) -> Mapping[str, Any]:
+    def pull(p: EulerParams, place: tuple[float, ...]) -> Mapping[str, Any]:
         along, across, _ = arc_frames(p)[k].T @ place
         if math.hypot(along, across) < LEAST:
             return {}
@@ -54,29 +55,24 @@ def arc(k: int) -> Handle:
     return pull
 
 
-def body(column: int) -> Handle:
-    """Nose or wing was pulled towards a place in the world: the shortest turn brings it there."""
-
-    def point(p: EulerParams, place: Place) -> Mapping[str, Any]:
-        R, aim = solve(p).R, np.asarray(place)
-        length = math.sqrt(aim @ aim)
-        if length < LEAST:
-            return {}
-        return triple_of(p, _shortest(R[:, column], aim / length) @ R)
-
-    return point
+def body(spot: Place) -> Handle:
+    """A spot of the aircraft was pulled towards a place in the world: the shortest turn brings it there."""
+    return lambda p, place: hold(p, (*spot, *place))
 
 
-def _shortest(start: Array, end: Array) -> Array:
-    """The rotation by the smallest angle that takes one unit vector to another; none for opposite ones."""
-    axis = np.cross(start, end)
-    sine = math.sqrt(axis @ axis)
-    return np.eye(3) if sine < LEAST else axis_angle_to_matrix(axis / sine, math.atan2(sine, float(start @ end)))
+def hold(p: EulerParams, held: tuple[float, ...]) -> Mapping[str, Any]:
+    """The same of any spot: where it is on the aircraft, then where in the world it goes."""
+    spot, place = np.reshape(held, (2, 3))
+    if min(spot @ spot, place @ place) < LEAST**2:
+        return {}
+    R = solve(p).R_progress
+    return {"progress": 3.0, **triple_of(p, shortest_turn(R @ spot, place) @ R)}
 
 
 HANDLES: Mapping[str, Handle] = {
     **{name: arc(k) for k, name in enumerate(ARCS)},
-    **{name: body(column) for name, column in BODY.items()},
+    **{name: body(spot) for name, spot in BODY.items()},
+    WHOLE: hold,
 }
 
 

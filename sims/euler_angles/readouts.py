@@ -23,7 +23,7 @@ def caption(p: EulerParams, s: EulerSolution) -> str:
     if p.progress < 3.0:
         return turn_words(p, min(int(p.progress), 2))
     own = "the axis it has by then" if p.frame == "intrinsic" else "a fixed axis of the world"
-    return f"Pull the end of an arc, the nose or the wing. Each turn of the aircraft is about {own}."
+    return f"Pull the aircraft, or the end of an arc. Each turn is about {own}."
 
 
 def readouts(p: EulerParams, s: EulerSolution) -> Iterator[Readout]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sims.euler_angles.actions import ARCS, BODY
+from sims.euler_angles.actions import ARCS, BODY, WHOLE
 from sims.euler_angles.params import NEAR_LOCK, EulerParams
 from sims.euler_angles.solution import RADII, EulerSolution, Turn
 from sims.kit.palette import DASHES
@@ -19,10 +19,12 @@ from sims.kit.types import Place, Vector
 TIPS = (0.92, 0.94)
 """Metres from the middle to the grips of nose and left wing."""
 GRIP = 0.05
+LEAST = 0.6
+"""Metres from the middle of the aircraft within which it is turned as a ball of that radius."""
 REACHED = 0.01
 """Degrees from the aircraft within which the target hides in it."""
-ANCHORS = dict(zip(RADII, ("top-center", "bottom-left", "center-left"), strict=True))
-"""The first label hangs lower, clear of the next one where the two arcs meet; the others stand beside their arcs."""
+ANCHORS = dict(zip(RADII, ("top-left", "bottom-left", "center-left"), strict=True))
+"""The first label hangs lower, clear of the next one where the two arcs meet, and of the letter of the world's X."""
 
 
 class EulerScene:
@@ -37,7 +39,7 @@ class EulerScene:
             stage.axes(parents[1], 1.15, ghost=True, letters=None),
             stage.axes(parents[2], 1.15, radius=0.02, letters=("x", "y", "z")),
         ]
-        stage.aircraft(parents[2])
+        stage.pulled(stage.aircraft(parents[2]), WHOLE, partial(getattr, self, "R"), least=LEAST)
         self.target = stage.group("/target")
         stage.aircraft("/target", ghost=(0.35, 0.35))
         self.target_label = stage.label("/target/label", "", (-0.9, 0.0, 0.45))
@@ -48,7 +50,7 @@ class EulerScene:
         self.names: tuple[str, ...] = ()
         self.held = [stage.grip(name, GRIP, axis=partial(self._axis, k)) for k, name in enumerate(ARCS)]
         self.body = [stage.grip(name, GRIP) for name in BODY]
-        self.axes = np.eye(3)
+        self.axes, self.R = np.eye(3), np.eye(3)
 
     def _axis(self, k: int) -> Vector:
         axis: Vector = self.axes[k]
@@ -60,7 +62,7 @@ class EulerScene:
         for frame, arc, turn in zip(self.frames, self.arcs, s.turns, strict=True):
             frame.pose(turn.wxyz)
             arc.draw(turn, near_lock=s.lock_distance < NEAR_LOCK)
-        self.names = p.names
+        self.names, self.R = p.names, s.R_progress
         self._hold(s, p.progress >= 3.0)
         self.target.show(s.target is not None and s.target.angle > REACHED)
         if s.target is not None:
@@ -70,7 +72,7 @@ class EulerScene:
     def _hold(self, s: EulerSolution, whole: bool) -> None:
         """Put the grips where arcs, nose and wing end, where all turns are made."""
         self.axes = np.array([arc[:, 2] for arc in s.arcs])
-        tips = [tip * s.R[:, column] for tip, column in zip(TIPS, BODY.values(), strict=True)]
+        tips = [tip * (s.R @ spot) for tip, spot in zip(TIPS, BODY.values(), strict=True)]
         for grip, place in zip(
             (*self.held, *self.body), (*s.ends.tolist(), *(tip.tolist() for tip in tips)), strict=True
         ):

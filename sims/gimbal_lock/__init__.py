@@ -35,7 +35,7 @@ SIM = Sim(
     readouts=readouts,
     folds=(LOCK, ROTATION),
     describe=describe,
-    view=View((3.6, -3.3, 1.7), (0.0, 0.0, -0.05), 2.05),
+    view=View((3.6, -3.3, 1.82), (0.0, 0.0, 0.07), 2.05),
     panes=panes,
     actions=(
         Action("lock", "Go to gimbal lock", "Turn the middle ring to 90°", actions.go_to_lock),

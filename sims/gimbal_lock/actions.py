@@ -9,21 +9,27 @@ import math
 from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Any
 
-from geometry import euler
+import numpy as np
+
+from geometry import euler, gimbal
 from geometry.arrays import Array
 from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.rings import RINGS, Ring
 from sims.kit.sim import Step
-from sims.kit.types import Place, Vector
+from sims.kit.types import Vector
 
 Angles = dict[str, float]
-Handle = Callable[[GimbalParams, Place], Mapping[str, Any]]
+Handle = Callable[[GimbalParams, tuple[float, ...]], Mapping[str, Any]]
+AIRCRAFT = "/aircraft"
+"""The aircraft, wherever it is taken."""
 SWING, TRY = 40.0, 30.0
 """Degrees of the turns that are shown."""
 READ = 1.8
 """Seconds in which a sentence is read."""
 ON_AXIS = 1e-6
 """Metres from its axis within which a place doesn't say how a ring is turned."""
+STIFF, ROUNDS = 0.1, 8
+"""Below which effect on the held spot, in parts of its lever, a ring is left where it is; and steps to the place."""
 LINED_UP = "At lock, the outer and the inner ring turn about one and the same line."
 
 
@@ -31,7 +37,7 @@ def turning(ring: Ring) -> Handle:
     """The ring turns about its axis until its grip points to a place in the world."""
     rest, rest_across = _about(ring, ring.held)
 
-    def turn(p: GimbalParams, place: Place) -> Mapping[str, Any]:
+    def turn(p: GimbalParams, place: tuple[float, ...]) -> Mapping[str, Any]:
         along, across = _about(ring, _holder(ring, p).T @ place)
         if math.hypot(along, across) < ON_AXIS:
             return {}
@@ -54,12 +60,31 @@ def _about(ring: Ring, place: Vector) -> tuple[float, float]:
     return float(place[(axis + 1) % 3]), float(place[(axis + 2) % 3])
 
 
-def set_size_of_pitch(p: GimbalParams, values: Place) -> Mapping[str, Any]:
+def pull(p: GimbalParams, held: tuple[float, ...]) -> Mapping[str, Any]:
+    """A spot of the aircraft, in its own frame, was pulled to a place in the world: the rings turn it there.
+
+    They turn as little as they need, and bring it as near as they can: at lock a pull about the lost axis turns none.
+    """
+    spot, place = np.reshape(held, (2, 3))
+    turns = np.radians(p.angles)
+    give = (STIFF**2) * float(spot @ spot) + ON_AXIS**2
+    for _ in range(ROUNDS):
+        at = euler.euler_to_matrix(turns, "zyx", "intrinsic") @ spot
+        moves = np.cross(gimbal.ring_axes(turns[0], turns[1]).T, at).T  # columns: how each ring would move the spot
+        turns += moves.T @ np.linalg.solve(moves @ moves.T + give * np.eye(3), place - at)
+    return {ring.angle: _wrapped(angle) for ring, angle in zip(RINGS, np.degrees(turns).tolist(), strict=True)}
+
+
+def set_size_of_pitch(p: GimbalParams, values: tuple[float, ...]) -> Mapping[str, Any]:
     """The mark of the plot was moved: how far the middle ring is turned, to the side on which it is."""
     return {"pitch": math.copysign(min(max(values[0], 0.0), 180.0), p.pitch)}
 
 
-HANDLES: Mapping[str, Handle] = {**{ring.grip: turning(ring) for ring in RINGS}, "effort": set_size_of_pitch}
+HANDLES: Mapping[str, Handle] = {
+    **{ring.grip: turning(ring) for ring in RINGS},
+    AIRCRAFT: pull,
+    "effort": set_size_of_pitch,
+}
 
 
 def go_to_lock(p: GimbalParams) -> Iterator[Step]:

@@ -21,7 +21,9 @@ ROTATION = "The rotation"
 def caption(p: GimbalParams, s: GimbalSolution) -> str:
     """What to do, or what to see."""
     if s.lost_axis is not None:
-        return "One lamp is out. Turn the outer ring, then the inner one: they do the same."
+        return (
+            "One lamp is out: outer and inner ring do the same. Pull the aircraft about the dark arrow: it won’t turn."
+        )
     if s.near:
         times = figure(s.effort, 0)
         return (

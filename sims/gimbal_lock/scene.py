@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
 from sims.gimbal_lock import digits, meshes
+from sims.gimbal_lock.actions import AIRCRAFT as AIRCRAFT_HELD
 from sims.gimbal_lock.params import GimbalParams
 from sims.gimbal_lock.rings import RINGS, Ring
 from sims.gimbal_lock.solution import GimbalSolution
@@ -16,10 +18,12 @@ from sims.kit.readout import figure, quantity
 from sims.kit.scene.nodes import Label
 from sims.kit.scene.pieces import arc_pieces
 from sims.kit.scene.stage import Stage
-from sims.kit.types import Vector
+from sims.kit.types import ORIGIN, Line, Vector
 
 AIRCRAFT = 0.75
 """Scale of the aircraft, which then has room in the inner ring."""
+LEAST = 0.45
+"""Metres from its middle within which it is turned as a ball of that radius."""
 STROKES = {"length": ((0.98, 0.0, 0.0), (-0.88, 0.0, 0.0)), "span": ((-0.1, 0.98, 0.0), (-0.1, -0.98, 0.0))}
 """Dashed through the ghost of the aircraft, from nose to tail and from tip to tip."""
 PER_RATE = 0.76
@@ -27,7 +31,7 @@ PER_RATE = 0.76
 round the aircraft."""
 FLAT = 1e-6
 """Half of the height of the ellipsoid where it is a disc: a body without any can't be shaded."""
-TIPS = {"z": 1.74, "y": 1.55, "x": 1.55}
+TIPS = {"z": 1.68, "y": 1.55, "x": 1.55}
 """How far the axes reach, in metres from the middle."""
 ANCHORS = {"z": "bottom-center", "y": "bottom-center", "x": "top-center"}
 """Labels stand above their tip or hang below it: where Z and X point up together, both are read."""
@@ -68,7 +72,9 @@ class GimbalScene:
             stage.mesh(f"{k}/ring", meshes.ring(ring), ring.letter) for k, ring in zip(holders[1:], RINGS, strict=True)
         ]
         self.labels = [self._ring(stage, ring, *pair) for ring, *pair in zip(RINGS, holders, holders[1:], strict=False)]
-        stage.aircraft(holders[3], scale=AIRCRAFT)
+        stage.pulled(
+            stage.aircraft(holders[3], scale=AIRCRAFT), AIRCRAFT_HELD, partial(getattr, self, "R"), least=LEAST
+        )
         stage.mesh(f"{holders[3]}/mount", meshes.mount(AIRCRAFT), steel)
         self.ghost = stage.group("/ghost")
         stage.aircraft("/ghost", scale=AIRCRAFT, ghost=(0.35, 0.35))
@@ -76,11 +82,11 @@ class GimbalScene:
             stage.lines(f"/ghost/{name}", "ghost", AIRCRAFT * np.array(ends), width=1.5, dash=(0.05, 0.04))
         self.ghost_label = stage.label("/ghost/label", "", (-0.75, 0.0, 0.4))
         self.reach = Reach(stage)
-        self.axes = np.eye(3)
+        self.axes, self.R = np.eye(3), np.eye(3)
         axes = [partial(self._axis, k) for k in range(3)]
         self.grips = [stage.grip(ring.grip, GRIP, axis=axis) for ring, axis in zip(RINGS, axes, strict=True)]
         for ring, body, grip, axis in zip(RINGS, bodies, self.grips, axes, strict=True):
-            stage.turned_by(body, ring.grip, grip, axis)
+            stage.turned_by(body, ring.grip, grip, partial(_through_middle, axis))
         self.lamps = Lamps(stage)
 
     def _axis(self, k: int) -> Vector:
@@ -104,7 +110,7 @@ class GimbalScene:
             node.pose(wxyz)
         for ring, label, angle in zip(RINGS, self.labels, p.angles, strict=True):
             label.text(f"{ring.letter.upper()} {ring.angle} {digits.angle(angle)}")
-        self.axes = s.axes
+        self.axes, self.R = s.axes, s.R
         for grip, place in zip(self.grips, s.grips.tolist(), strict=True):
             grip.pose(position=place)
         self.lamps.draw(s)
@@ -113,6 +119,10 @@ class GimbalScene:
         if s.ghost is not None:
             self.ghost.pose(s.ghost.wxyz)
             self.ghost_label.text(f"ghost, {quantity(s.ghost.angle, '°', 0)} away")
+
+
+def _through_middle(axis: Callable[[], Vector]) -> Line:
+    return ORIGIN, axis()
 
 
 class Reach:

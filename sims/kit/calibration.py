@@ -22,7 +22,7 @@ TAG = re.compile(r"<([A-Za-z_]\w*)[^>]*>([^<]*)")
 ABOUT_A_MATRIX = {"rows", "cols", "dt", "typeid"}
 """What stands between a matrix's name and its `data`."""
 OF_A_CAMERA = re.compile(
-    r"(k|m|mtx|cameramatrix|d|distcoeffs|distortioncoefficients|cam|p|prect0|srect0)(\d|left|right)"
+    r"(k|m|mtx|cameramatrix|d|distcoeffs|distortioncoefficients|imagesize|cam|p|prect0|srect0)(\d|left|right)"
 )
 """K1, cameraMatrix2, K_left, Middlebury's and Kalibr's cam0, KITTI's P0 and P_rect_00."""
 FROM_THE_FIRST = re.compile(r"([rt])1([2-9])")

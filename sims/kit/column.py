@@ -209,7 +209,7 @@ def dialled(dial: Dial[Any, Any]) -> str:
 
 
 def toolbar(downloads: Iterable[str] = ()) -> str:
-    """The buttons that every sim has, and those for what can be had as a file."""
+    """The buttons that every sim has, and those for what can be had as a file; what few people want is folded."""
     files = "".join(
         f'<button type="button" data-s3="download" value="{escape(name)}">Download {escape(name)}</button>'
         for name in downloads
@@ -218,11 +218,13 @@ def toolbar(downloads: Iterable[str] = ()) -> str:
         '<div class="s3-toolbar">'
         '<button type="button" data-s3="share">Share</button>'
         '<button type="button" data-s3="present">Present</button>'
+        '<button type="button" data-s3="more" aria-expanded="false" aria-controls="more">More</button>'
+        '<div class="s3-actions" id="more" hidden="">'
         '<button type="button" data-s3="code" title="A Python script with the numbers of now">Copy code</button>'
         '<button type="button" data-s3="picture">Save picture</button>'
         '<button type="button" data-s3="take-home">Take it home</button>'
         '<button type="button" data-s3="keys" aria-keyshortcuts="?">Keys <kbd>?</kbd></button>'
-        f"{files}</div>"
+        f"{files}</div></div>"
     )
 
 

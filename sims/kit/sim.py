@@ -33,6 +33,7 @@ class Scene(Protocol[P_in, S_in]):
 
     One whose things are linked with pictures and tables also has `highlight(name)`: it highlights what somebody hovers
     over, or nothing for a name that it doesn't know. It is told again after each `draw`.
+    One of a sim that says what is under the pointer has `under(found)`: it shows that, or nothing for None.
     """
 
     def __init__(self, stage: Stage) -> None: ...
@@ -179,6 +180,11 @@ class Sim(Generic[P, S]):
     """What dragging a node or a mark in a picture changes: of parameters and the place, in metres or pixels."""
     clicks: Mapping[str, Callable[..., Mapping[str, Any]]] = field(default_factory=dict)
     """What a click into the scene changes, by the names that the scene gave to `Stage.rays`: of parameters and ray."""
+    under: Callable[..., object] | None = None
+    """What is under a pointer that passes over the scene: of parameters and its ray; None is nothing.
+
+    It is no state: the scene shows it until the next drawing.
+    """
     eases: Callable[[P, P], Iterator[Step]] | None = None
     """What is seen of a change when somebody chose or typed something, unless motion is reduced.
 

@@ -19,3 +19,5 @@ Segment = tuple[Place, Place]
 """Both ends of a straight piece."""
 Vector = Sequence[float] | npt.NDArray[np.float64]
 """Three numbers, in any form."""
+Line = tuple[Vector, Vector]
+"""A place on a straight line, in metres, and its direction at length one."""

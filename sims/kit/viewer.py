@@ -13,7 +13,7 @@ from sims.kit.palette import DARK, LIGHT
 from sims.kit.params import Params
 from sims.kit.scene.stage import Stage
 from sims.kit.sim import Sim
-from sims.kit.types import Place, Vector
+from sims.kit.types import Vector
 from sims.kit.view import View
 
 FARTHEST = 1e4
@@ -49,6 +49,7 @@ class Viewer:
         self.scene = sim.scene(self._stage)
         self._highlight: Callable[[str], None] | None = getattr(self.scene, "highlight", None)
         self._highlighted = ""
+        self._under: Callable[[object], None] | None = getattr(self.scene, "under", None)
         self._live = False
         self._version = self._stage.group(VERSION)
         self._home: View | None = None
@@ -56,6 +57,8 @@ class Viewer:
     def draw(self, params: Params, solution: Any, version: int) -> None:
         """Show a state; only what differs is sent, in one window."""
         with self.client.atomic():
+            if self._under is not None:
+                self._under(None)
             self.scene.draw(params, solution)
             if self._highlighted:
                 self._show_highlighted()
@@ -91,6 +94,13 @@ class Viewer:
                 self._show_highlighted()
             self.client.flush()
 
+    def under(self, found: object) -> None:
+        """Show what is under the pointer, or nothing for None, until the next drawing."""
+        if self._live and self._under is not None:
+            with self.client.atomic():
+                self._under(found)
+            self.client.flush()
+
     def _show_highlighted(self) -> None:
         self._stage.highlight(self._highlighted)
         if self._highlight is not None:
@@ -104,6 +114,6 @@ class Viewer:
         if not self.watching:
             self._host.click(name, ray)
 
-    def _dragged(self, name: str, place: Place) -> None:
+    def _dragged(self, name: str, place: tuple[float, ...]) -> None:
         if not self.watching:
             self._host.drag(name, place)

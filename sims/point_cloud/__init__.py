@@ -49,6 +49,7 @@ SIM = Sim(
     ),
     handles={"/second": actions.hold},
     clicks={"/cloud": actions.pick},
+    under=actions.under,
     challenges=CHALLENGES,
     states={
         "street": {"dataset": "street", "color": "intensity"},

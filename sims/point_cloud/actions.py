@@ -9,11 +9,11 @@ from typing import Any
 from geometry import clouds
 from sims.kit.sim import Step
 from sims.kit.types import Place
-from sims.point_cloud import registration
+from sims.point_cloud import layers, registration
 from sims.point_cloud.library import NO_FILES, Library
 from sims.point_cloud.offers import CloudOffers
 from sims.point_cloud.params import CloudParams
-from sims.point_cloud.solution import last_step, shown_points, source
+from sims.point_cloud.solution import last_step, processed, shown_points, source
 
 
 def play(p: CloudParams, library: Library = NO_FILES) -> Iterator[Step]:
@@ -45,6 +45,15 @@ def pick(p: CloudParams, ray: tuple[float, ...], library: Library = NO_FILES) ->
     found = clouds.pick(points, ray[:3], ray[3:]) if len(points) else None
     which = "other" if p.measure and p.selected is not None else "selected"
     return {which: None if found is None else found.index}
+
+
+def under(p: CloudParams, ray: tuple[float, ...], library: Library = NO_FILES) -> layers.Cells | None:
+    """The cells about the thinned point that a ray (origin, direction) points at; none where a process goes on."""
+    if p.voxel_size == 0.0 or p.process != "none":
+        return None
+    cloud, thin, _ = processed(p, library)
+    found = clouds.pick(thin.points, ray[:3], ray[3:]) if len(thin) else None
+    return None if found is None else layers.cells(cloud, thin, found.index, p.voxel_size)
 
 
 def hold(p: CloudParams, place: Place, library: Library = NO_FILES) -> dict[str, Any]:

@@ -15,9 +15,9 @@ from sims.kit.scene.nodes import Arrows, Cloud, Node
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN
 from sims.kit.view import View
-from sims.point_cloud.layers import Layer, boxed
+from sims.point_cloud.layers import Cells, Layer, boxed
 from sims.point_cloud.params import VIEWS, CloudParams
-from sims.point_cloud.scene_selected import About
+from sims.point_cloud.scene_selected import About, CellsInScene
 from sims.point_cloud.selected import Selected
 from sims.point_cloud.solution import CloudSolution
 
@@ -55,6 +55,7 @@ class CloudScene:
         self.mesh = Mesh(stage)
         self.links = stage.lines("/pairs", "held", width=1.5)
         self.about = About(stage)
+        self.passed, self.dot = CellsInScene(stage, "/under", "ink"), 1.0
         self.ghost: Cloud = stage.cloud("/original", "ghost")
         pale = PALE * np.array(rgb(stage.palette.ghost)) + (1.0 - PALE) * np.array(rgb(stage.palette.page))
         self._pale = before_film(pale[None])
@@ -86,13 +87,18 @@ class CloudScene:
         self.marked.node.pose(quaternion.from_matrix(s.drawn.T[:3, :3]).tolist(), s.drawn.T[:3, 3])
         self.box.draw(s.minimum, s.maximum, p.show_box and s.points_out > 0)
         self.ring.draw(s.selected, view.radius)
-        self.about.draw(s, max(1.4 * dot, 0.5 * size), GHOST * dot)
-        self._original(s, GHOST * dot)
+        self.dot = GHOST * dot
+        self.about.draw(s, max(1.4 * dot, 0.5 * size), self.dot)
+        self._original(s, self.dot)
         self.grip.place(s.drawn.grip)
         self.plane.draw(s.drawn.ground)
         self.mesh.draw(s)
         self._pairs(s)
         self._names(s)
+
+    def under(self, cells: Cells | None) -> None:
+        """Show the cells under the pointer."""
+        self.passed.draw(cells, self.dot)
 
     def _turn_to(self, view: View, s: CloudSolution) -> None:
         """Another cloud may be far larger: look at all of it, and lay the floor for it."""

@@ -10,14 +10,19 @@ import numpy as np
 
 from geometry import quaternion
 from geometry.arrays import Array
+from geometry.rotations import shortest_turn
 from sims.kit.params import LONGEST_VALUE
 from sims.kit.sim import Step
 from sims.kit.spelling import spell
+from sims.quaternion import ball, dial
 from sims.quaternion.params import MOST_TURNS, REACH, QuaternionParams, Triple
+from sims.quaternion.solution import solve
 
 DIGITS = 12
 """Decimals of the start to which all turns are taken back."""
 SECONDS = 1.2
+CLOSE = 1e-6
+"""Metres within which a place says no direction."""
 AFTER: dict[str, Any] = {"angle": 0.0, "t": 1.0}
 """With the turn made, the object stays where it is: there is no angle to go."""
 
@@ -26,6 +31,24 @@ def hold_tip(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The axis towards a place in the world; at the origin it stays."""
     length = math.hypot(*place)
     return {} if length < 0.05 else {"axis": _rounded(v / length for v in place)}
+
+
+def hold_angle(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
+    """The angle at which its arc ends where it is led to."""
+    x, y, _ = (quaternion.to_matrix(solve(p).axis_frame).T @ place).tolist()
+    return {} if math.hypot(x, y) < CLOSE else dial.turned_to(p, x, y)
+
+
+def hold_object(p: QuaternionParams, held: tuple[float, ...]) -> dict[str, Any]:
+    """A spot of the object, in its own frame, was pulled to a place in the world: the one turn from start to there."""
+    spot, place = np.reshape(held, (2, 3))
+    if min(spot @ spot, place @ place) < CLOSE**2:
+        return {}
+    s = solve(p)
+    R = s.interpolated.R
+    total = quaternion.from_matrix(shortest_turn(R @ spot, place) @ R)
+    q = quaternion.multiply(total, quaternion.conjugate(s.start))
+    return {"t": 1.0, **ball.turn_of(p, q if q @ s.q >= 0.0 else -q)}
 
 
 def hold_point(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:

@@ -148,12 +148,12 @@ def _edge(direction: Array) -> Pixel | None:
 
 def hold_q(p: QuaternionParams, to: tuple[float, float]) -> dict[str, Any]:
     """q led to a pixel: in the plane of the picture, as near to who looks as it is."""
-    return _turn(p, from_ball(_led(_placed(p, 1.0), to)))
+    return turn_of(p, from_ball(_led(_placed(p, 1.0), to)))
 
 
 def hold_minus_q(p: QuaternionParams, to: tuple[float, float]) -> dict[str, Any]:
     """The same for −q: q goes with it, on the other side."""
-    return _turn(p, -from_ball(_led(_placed(p, -1.0), to)))
+    return turn_of(p, -from_ball(_led(_placed(p, -1.0), to)))
 
 
 def _placed(p: QuaternionParams, sign: float) -> Array:
@@ -167,7 +167,7 @@ def _led(place: Array, to: tuple[float, float]) -> Array:
     return np.array([x, y, FRAME[2] @ place]) @ FRAME
 
 
-def _turn(p: QuaternionParams, q: Array) -> dict[str, Any]:
+def turn_of(p: QuaternionParams, q: Array) -> dict[str, Any]:
     """The axis and angle of a quaternion: in the second round on the side where the axis is."""
     n, radians = quaternion.to_axis_angle(q)
     angle = math.degrees(radians)

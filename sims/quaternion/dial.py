@@ -101,7 +101,10 @@ def hold_half(p: QuaternionParams, pixel: tuple[float, float]) -> dict[str, Any]
 
 def _turned(p: QuaternionParams, middle: Pixel, pixel: tuple[float, float], round_: float) -> dict[str, Any]:
     x, y = pixel[0] - middle[0], middle[1] - pixel[1]
-    if math.hypot(x, y) < 1.0:
-        return {}
+    return {} if math.hypot(x, y) < 1.0 else turned_to(p, x, y, round_)
+
+
+def turned_to(p: QuaternionParams, x: float, y: float, round_: float = WHOLE) -> dict[str, Any]:
+    """The angle of a direction (x, y), from the present one the shorter way; so many degrees are once round."""
     ahead = math.remainder(math.atan2(y, x) / (2.0 * math.pi) * round_ - p.angle, round_)
     return {"angle": float(round(min(max(p.angle + ahead, 0.0), TWICE)))}

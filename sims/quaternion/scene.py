@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
-import trimesh
 
+from geometry import quaternion
+from geometry.arrays import Array
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
 from sims.quaternion.params import TIP, WHOLE, QuaternionParams
@@ -16,9 +18,10 @@ from sims.quaternion.solution import QuaternionSolution
 
 ARC, HEIGHT = 0.42, 1.4
 """Radius of the angle's arc, and how far up the axis it is, in metres: outside the unit sphere."""
-ARROWHEAD = trimesh.creation.cone(radius=0.05, height=0.15, sections=24)
-ARROWHEAD.apply_transform(trimesh.transformations.rotation_matrix(-0.5 * np.pi, (1.0, 0.0, 0.0)))
-ARROWHEAD.apply_translation((ARC, -0.12, 0.0))
+BESIDE = 0.72
+"""Metres from the axis to the angle in words: clear of what the arc is held by."""
+LEAST = 0.6
+"""Metres from the object's middle within which it is turned as a ball of that radius."""
 LAP = 0.12
 """How far below the arc the circle of the first whole turn is, once the angle is in its second."""
 
@@ -30,7 +33,8 @@ class QuaternionScene:
         stage.ground(size=6.0, height=-1.4)
         self.world = stage.axes("/world", 1.12, radius=0.008)
         self.object = stage.axes("/object", 1.08, radius=0.018, letters=None)
-        stage.aircraft("/object")
+        self.R = np.eye(3)
+        stage.pulled(stage.aircraft("/object"), "/object", partial(getattr, self, "R"), least=LEAST)
         self.start, self.target = Ghost(stage, "start"), Ghost(stage, "target")
         self.axis = Axis(stage)
         self.point = Point(stage)
@@ -41,6 +45,7 @@ class QuaternionScene:
         alone = p.topic not in ("order", "path")
         self.object.show(alone)
         self.object.pose(s.interpolated.q.tolist())
+        self.R = s.interpolated.R
         self.world.show(alone)
         self.start.draw(s.start.tolist(), alone and not s.at_start)
         self.target.draw(s.q_total.tolist(), alone and not s.at_target)
@@ -87,15 +92,21 @@ class Axis:
         self.line = stage.lines("/axis/turn/arc", "held", [(ARC, 0.0, 0.0), (ARC, 0.0, 0.001)], width=4.0)
         stage.lines("/axis/turn/begin", "ghost", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
         self.end = stage.lines("/axis/turn/end", "held", [(0.0, 0.0, 0.0), (ARC, 0.0, 0.0)], width=1.5)
-        stage.mesh("/axis/turn/end/head", ARROWHEAD, "held")
         stage.linked("angle", self.line, self.end)
         self.label = stage.label("/axis/turn/label", "")
+        self.n = np.array([0.0, 0.0, 1.0])
+        self.hand = stage.grip("/angle", 0.045, axis=partial(getattr, self, "n"))
         self.tip = stage.grip("/tip", 0.05)
         stage.label("/tip/label", "n", (0.0, 0.0, 0.17))
 
     def draw(self, p: QuaternionParams, s: QuaternionSolution, visible: bool) -> None:
         self.frame.show(visible)
         self.tip.show(visible)
+        self.hand.show(visible)
+        self.n = s.n
+        frame: Array = quaternion.to_matrix(s.axis_frame)
+        radians = math.radians(p.angle)
+        self.hand.pose(position=(frame @ (ARC * math.cos(radians), ARC * math.sin(radians), HEIGHT)).tolist())
         self.frame.pose(s.axis_frame.tolist())
         self.tip.pose(position=s.tip.tolist())
         again = p.angle > WHOLE
@@ -104,7 +115,7 @@ class Axis:
         self.lap.show(again)
         self.line.arc(ARC, radians)
         self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
-        middle = 1.4 * ARC * math.cos(radians / 2), 1.4 * ARC * math.sin(radians / 2), 0.0
+        middle = BESIDE * math.cos(radians / 2), BESIDE * math.sin(radians / 2), 0.0
         self.label.pose(position=middle)
         self.label.text(f"θ {quantity(p.angle, '°', 0)}")
 

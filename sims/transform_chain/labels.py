@@ -21,8 +21,8 @@ from sims.transform_chain.solution import ENOUGH, ChainSolution, Swapped
 from sims.transform_chain.strip import sub
 from sims.transform_chain.views import VIEW, view_of
 
-WIDTH, HEIGHT = 0.027, 0.062
-"""Room that a letter takes, and a line, in radii of the view."""
+WIDTH, EDGE, HEIGHT = 0.036, 0.03, 0.092
+"""Room that a letter takes, that round a word, and a line, in radii of the view, in a page of 700×600 pixels."""
 LONG = 7
 """Labels at once at most that aren't a single letter."""
 NAMED = 4
@@ -65,7 +65,7 @@ def said(p: ChainParams, s: ChainSolution) -> list[Word]:
     long = 0
     high = HEIGHT * radius
     for word in _wanted(p, s):
-        wide = 0.5 * WIDTH * radius * len(word.text)
+        wide = 0.5 * (EDGE + WIDTH * len(word.text)) * radius
         x, y = (dot(axis, word.place) for axis in PLANE)
         more = long + (len(word.text) > 1)
         if more > LONG or any(abs(x - u) < wide + w and abs(y - v) < high for u, v, w in boxes):
@@ -85,11 +85,12 @@ def _wanted(p: ChainParams, s: ChainSolution) -> Iterator[Word]:
         yield Word(f"world_{axis}", axis, _along(ORIGIN, column, 1.08 * world(s)))
     places = s.positions.tolist()
     for i in _named(p):
-        above = 0.2 * s.size
+        above = 0.26 * s.size
         x, y, z = places[i]
         a, b, c = places[i - 1] if p.show == "individual" else places[i]
-        yield Word(f"T{i}", transform_name(p.show, i), (0.5 * (a + x), 0.5 * (b + y), 0.5 * (c + z) + above))
-    yield Word("p", "p", _along(s.through[-1, :3].tolist(), UNITS[2], 0.09))
+        middle = _along((0.45 * a + 0.55 * x, 0.45 * b + 0.55 * y, 0.45 * c + 0.55 * z), UNITS[2], above)
+        yield Word(f"T{i}", transform_name(p.show, i), middle)
+    yield Word("p", "p", _along(s.through[-1, :3].tolist(), UNITS[2], -0.14))
     for k, axis in enumerate(p.axes):
         if p.kind(k) == "f":
             continue

@@ -26,7 +26,7 @@ def caption(p: ChainParams, s: ChainSolution) -> str:
         i = p.stage
         name = f"T{sub(i - 1)}{sub(i)}"
         return f"{name} alone: its columns are the axes and the origin of frame {i}, as frame {i - 1} sees them."
-    return "Pull the ring of a joint: all that follows moves as one piece, and only its own transform changes."
+    return "Pull a link: all that follows moves as one piece, and only its own transform changes."
 
 
 def readouts(p: ChainParams, s: ChainSolution) -> Iterator[Readout]:

@@ -33,6 +33,7 @@ class ChainScene:
         self.arm = Arm(stage, "")
         self.end = End(stage)
         self.grip = stage.grip("/grip", 0.032, halo=2.4)
+        stage.carried_by(self.end.parts, "/grip", self.grip)
         self.composed: list[Straight[Arrows]] = []
         self.circle = stage.lines("/trace", "held", width=2.5, dash=(0.06, 0.05))
         stage.linked("trace", self.circle)
@@ -44,7 +45,7 @@ class ChainScene:
     def draw(self, p: ChainParams, s: ChainSolution) -> None:
         self.world.scale(world(s))
         self.arm.draw(s.joints, s.size, p.stage, arrows=p.show == "individual", tool=s.tool)
-        self.arm.hold(s.holds, s.size)
+        self.arm.hold(s.holds, s.lines, s.size)
         self.column.pose(position=(0.0, 0.0, -meshes.AXLE * s.size))
         self.column.scale((s.size, s.size, -meshes.FLOOR - meshes.AXLE * s.size))
         self.end.draw(p, s)

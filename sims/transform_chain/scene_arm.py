@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from sims.kit.scene.nodes import Grip, Strokes
 from sims.kit.scene.stage import Stage
-from sims.kit.types import ORIGIN, Place, Quaternion
+from sims.kit.types import ORIGIN, Line, Place, Quaternion
 from sims.transform_chain import meshes
 from sims.transform_chain.drawing import Joint
 
@@ -34,6 +35,7 @@ class Arm:
         self._path = root
         self.links: list[Link] = []
         self.grips: list[Grip] = []
+        self.lines: Sequence[Line | None] = ()
         self.count = 0
 
     def draw(
@@ -54,13 +56,19 @@ class Arm:
                 link.draw(joints[k], size * (1.0 - 0.45 * k / max(last, 3)), size, hand=k == last and tool == "x")
                 link.mark(frame=k < last and stage in (None, k + 1, k + 2), arrow=arrows and stage in (None, k + 1))
 
-    def hold(self, places: Sequence[Place | None], size: float) -> None:
-        """Grips of the joints, at places in the world."""
+    def hold(self, places: Sequence[Place | None], lines: Sequence[Line | None], size: float) -> None:
+        """Grips of the joints, at places in the world; each link is held too, and turns about its joint's line."""
+        self.lines = lines
         while len(self.grips) < len(places):
-            self.grips.append(self._stage.grip(f"/turn{len(self.grips) + 1}", 0.024, halo=2.0))
+            k, name = len(self.grips), f"/turn{len(self.grips) + 1}"
+            self.grips.append(self._stage.grip(name, 0.024, halo=2.0))
+            self._stage.turned_by(self.links[k].body, name, self.grips[k], partial(self._line, k))
         for k, grip in enumerate(self.grips):
             grip.place(places[k] if k < len(places) else None)
             grip.scale(size)
+
+    def _line(self, k: int) -> Line | None:
+        return self.lines[k]
 
     def stress(self, number: int) -> None:
         """Have the arrow and the frame of a link, from 1, stand out, and no other."""

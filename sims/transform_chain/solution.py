@@ -13,7 +13,7 @@ from geometry import se3
 from geometry.arrays import Array
 from geometry.kinematics import Chain, Posture, dexterity
 from geometry.rotations import rotation_angle
-from sims.kit.types import Quaternion
+from sims.kit.types import Line, Quaternion
 from sims.transform_chain.drawing import HOLD, Circle, Joint, Span, circle, hold, joint, place_of, span, wxyz_of
 from sims.transform_chain.params import ChainParams, Place
 
@@ -80,6 +80,8 @@ class ChainSolution:
     """The composed transforms, from the world to each frame."""
     holds: tuple[Place | None, ...]
     """Where each joint is held, in the world; None for a fixed one."""
+    lines: tuple[Line | None, ...]
+    """What each joint turns about, in the world: a place and a direction; None for one that doesn't turn."""
     circle: Circle | None
     swapped: Swapped | None
     size: float
@@ -124,6 +126,7 @@ def solve(p: ChainParams) -> ChainSolution:
         tool="z" if p.rows and not chain.lengths[-1] and p.axes[-1] == "z" else "x",
         spans=tuple(span(positions[0], position) for position in positions[1:]),
         holds=_holds(chain, moves, posture, joints, HOLD * size),
+        lines=_lines(p, posture),
         circle=_trace(p, posture),
         swapped=None if swapped is None else swapped[1],
         size=size,
@@ -142,6 +145,12 @@ def _holds(
     own = map(hold, chain.links, joints, moves, [radius] * len(joints))
     places = (place_of(T[:3, :3] @ place + T[:3, 3]) for T, place in zip(frames, own, strict=True))
     return tuple(None if kind == "f" else place for kind, place in zip(chain.joints, places, strict=True))
+
+
+def _lines(p: ChainParams, posture: Posture) -> tuple[Line | None, ...]:
+    frames = [np.eye(4), *posture.composed[:-1]]
+    lines = [(place_of(T[:3, 3]), place_of(T[:3, "xyz".index(axis)])) for T, axis in zip(frames, p.axes, strict=True)]
+    return tuple(line if p.kind(k) == "r" else None for k, line in enumerate(lines))
 
 
 def _freedom(p: ChainParams, chain: Chain, posture: Posture) -> dict[str, Any]:

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 from sims.kit.paste import Paste
 from sims.kit.sim import Action, Contract, Objective, Sim, Typed
+from sims.kit.stereo_text import ENDINGS
 from sims.kit.view import View
 from sims.triangulation import actions, calibration
 from sims.triangulation.captions import caption
 from sims.triangulation.challenges import CHALLENGES
+from sims.triangulation.offers import TriangulationOffers
 from sims.triangulation.panes import panes
 from sims.triangulation.params import FARTHEST, IMAGES, NEAREST, RIG, SURENESS, TriangulationParams
 from sims.triangulation.readouts import EQUATIONS, METHODS, describe, readouts
 from sims.triangulation.scene import TriangulationScene, seen
 from sims.triangulation.solution import TriangulationSolution, solve
+
+TOE_IN = calibration.toe_in(TriangulationParams())
 
 __all__ = ["CONTRACT", "SIM", "TriangulationParams", "TriangulationSolution", "solve"]
 
@@ -48,17 +52,27 @@ SIM = Sim(
             calibration.middlebury, group=RIG,
         ),
         Action("kitti", "KITTI", "Two cameras on the roof of a car", calibration.kitti, group=RIG),
+        Action(
+            "toe-in", "Toe-in pair", "Two unlike cameras, each turned by 15° to the other’s side", calibration.toe_in,
+            group=RIG,
+        ),
+        Action("parallel", "The sim’s own", "The two parallel cameras as they open", calibration.parallel, group=RIG),
     ),
     selects="method",
     paste=Paste(
         group=RIG,
-        title="A rig of your own",
-        about="What a stereo data set’s calibration file says: Middlebury’s calib.txt, or KITTI’s calib_cam_to_cam.txt",
+        title="A stereo pair of your own",
+        about=(
+            "What a calibration says: K1, K2, R and T as OpenCV has them, Kalibr’s camchain, both ROS files,"
+            " Middlebury’s calib.txt, or KITTI’s calib_cam_to_cam.txt. Rectified or not"
+        ),
         example=calibration.EXAMPLE,
         read=calibration.read,
         changes=calibration.changes,
-        endings=(".txt",),
+        endings=ENDINGS,
+        says=calibration.says,
     ),
+    offers=TriangulationOffers,
     handles={
         "/point": actions.hold_point, "left_uv": actions.hold_left, "right_uv": actions.hold_right,
         "depth": actions.hold_depth,
@@ -71,6 +85,10 @@ SIM = Sim(
     ),
     challenges=CHALLENGES,
     states={
+        "toe-in pair": TOE_IN,
+        "toe-in pair, noise": {**TOE_IN, "noise": 1.0, "seed": 3},
+        "toe-in pair, rays miss": {**TOE_IN, "right_uv": (1290.0, 480.0), "method": "optimal"},
+        "toe-in pair, behind": {**TOE_IN, "left_uv": (100.0, 540.0), "right_uv": (1200.0, 400.0)},
         "rays miss": {"right_uv": (320, 222), "method": "optimal"},
         "noise": {"noise": 1.0, "seed": 3},
         "much noise": {"noise": 5.0, "baseline": 0.3, "method": "midpoint"},
@@ -88,10 +106,14 @@ SIM = Sim(
 )  # fmt: skip
 
 CONTRACT = Contract(
-    parameters="baseline focal left_uv right_uv noise seed method hold width height cx cy doffs",
+    parameters=(
+        "baseline focal left_uv right_uv noise seed method hold width height cx cy doffs own own_size left_of_text"
+        " right_of_text"
+    ),
     solution=(
         "point by_method ray_gap closest_points disparity depth_from_disparity covariance"
         " ellipsoid_axes parallax_angle in_front ray_angle point_angle equations singular_values least_vector"
+        " depth point_left size_left size_right K_left K_right F"
     ),
     link="baseline=1.2&focal=800&left_uv=400,200&right_uv=300,201.5&noise=0.5&seed=7&method=optimal",
     state={

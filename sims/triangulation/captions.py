@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from geometry.triangulation import depth_sigma
 from sims.kit.readout import THIN, figure
+from sims.triangulation.depth_plot import sigma_before
 from sims.triangulation.params import OF_CURVE, TriangulationParams
 from sims.triangulation.readouts import length
-from sims.triangulation.solution import TriangulationSolution, sigma_of
+from sims.triangulation.solution import TriangulationSolution
 
 PLUS_MINUS = "±\u00a0"
 LESS_AND_MORE = (("shorter baseline", "longer baseline"), ("shorter focal length", "longer focal length"))
@@ -14,6 +14,8 @@ LESS_AND_MORE = (("shorter baseline", "longer baseline"), ("shorter focal length
 
 def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
     """What to do, or what to see."""
+    if s.point is None and p.pair is not None:
+        return "The rays don’t meet in front of both cameras: pull the right point onto the dashed line, and along it."
     if s.point is None:
         return "The rays don’t meet in front of the cameras: pull the right point to the left in its picture."
     if changed := _change(p, s):
@@ -33,17 +35,20 @@ def _change(p: TriangulationParams, s: TriangulationSolution) -> str:
     changed = [k for k, (was, is_now) in enumerate(zip(p.before, now, strict=True)) if was != is_now]
     if not changed or OF_CURVE.index("noise") in changed:
         return ""
-    more, what = now[0] * now[1] > p.before[0] * p.before[1], "Another rig"
+    b, f, _ = p.before
+    more, what = now[0] * now[1] > b * f, "Another rig"
     if len(changed) == 1:
         what = LESS_AND_MORE[changed[0]][more]
         if p.hold == "pixels":
             where = "farther" if more else "nearer"
             return f"With the pixels kept, a {what} means a {where} point, and so a {_sure(not more)} one."
         what = f"A {what}"
-    b, f, noise = p.before
-    was = float(depth_sigma(s.depth, b, f, sigma_of(noise)))
+    was = sigma_before(p, s)
+    if not was > 0.0:  # it wasn't in front of both cameras
+        return ""
     change = f"from {PLUS_MINUS}{figure(was)} to {PLUS_MINUS}{figure(s.depth_sigma)}{THIN}m"
-    return f"{what}, a {_sure(more)} depth: {change} at the same point."
+    surer = more if p.pair is None else s.depth_sigma < was
+    return f"{what}, a {_sure(surer)} depth: {change} at the same point."
 
 
 def _sure(more: bool) -> str:

@@ -17,7 +17,7 @@ UNSURE, EXACTLY = 0.1, 0.002
 DISAGREE = 0.01
 """Metres between the points of any two methods."""
 NO_POINT = Progress(0.0, "The rays give no point: bring them together in front of the cameras first.")
-RIG = ("baseline", "focal")
+RIG = ("baseline", "focal", "own")
 
 
 def _miss(p: TriangulationParams, s: TriangulationSolution) -> Progress:

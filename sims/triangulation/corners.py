@@ -10,8 +10,9 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.camera import Camera
 from sims.kit.frame import WIDTH
+from sims.kit.stereo import Size
+from sims.kit.types import Pixel
 from sims.kit.world import BODIES, Paint
-from sims.triangulation.holding import Pixel
 
 WORLD = (-0.42, 3.653, 0.0)
 """Metres by which the little world is moved: the point of the defaults is straight above the second post."""
@@ -55,13 +56,16 @@ def seen(left: Camera, right: Camera) -> Array:
     return np.where(np.isfinite(pixels), pixels, np.inf)
 
 
-def matched(pixels: Array, left: Pixel, right: Pixel, width: int, point: Array | None) -> Matched | None:
-    """The corner of those `seen` that is next to both image points, for a result that exists."""
+def matched(
+    pixels: Array, left: Pixel, right: Pixel, sizes: tuple[Size, Size], point: Array | None, depth: float
+) -> Matched | None:
+    """The corner of those `seen` that is next to both image points, for a result that exists, and is so far away."""
     if point is None:
         return None
-    off = np.abs(pixels - (*left, *right)).max(axis=1)
+    scale = [WIDTH / sizes[0][0]] * 2 + [WIDTH / sizes[1][0]] * 2
+    off = (np.abs(pixels - (*left, *right)) * scale).max(axis=1)
     k = int(off.argmin())
-    if off.item(k) > NEAR * width / WIDTH:
+    if off.item(k) > NEAR:
         return None
     apart = math.dist(PLACES[k].tolist(), point.tolist())
-    return Matched(PLACES[k], OF[k], apart) if apart <= ALIKE * point.item(1) else None
+    return Matched(PLACES[k], OF[k], apart) if apart <= ALIKE * depth else None

@@ -1,16 +1,29 @@
 """What stays while the cameras change: how the pixels of a point in space move with the rig.
 
-In a parallel rig all of it follows from the pixels, with d = u_left - u_right + doffs and Z = f b / d.
+In a parallel rig all of it follows from the pixels, with d = u_left - u_right + doffs and Z = f b / d. For cameras that
+are turned the point itself is looked for, and seen again.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.triangulation import triangulate_optimal
+from sims.kit.types import Pixel
+from sims.triangulation.rig import Rig, rig
 
 if TYPE_CHECKING:
     from sims.triangulation.params import TriangulationParams
 
-Pixel = tuple[float, float]
+Miss = tuple[Pixel, Pixel]
+"""By how much each pixel isn't that of the point."""
+EXACT: Miss = (0.0, 0.0), (0.0, 0.0)
+TRIES = 30
+"""How often a point is put to where one picture shows it, and then the other; few are enough."""
 
 
 def held_point(before: TriangulationParams, after: TriangulationParams) -> dict[str, Any]:
@@ -19,6 +32,10 @@ def held_point(before: TriangulationParams, after: TriangulationParams) -> dict[
     Rays that miss each other go on to miss by as many pixels: what is held is the optimal point. Nothing is held where
     there is no point in front of the cameras; what a picture doesn't show any more goes to where both do.
     """
+    if before.pair is not None or after.pair is not None:
+        cameras = rig(before)
+        found = triangulate_optimal(cameras.left, cameras.right, before.left_uv, before.right_uv)
+        return seen(rig(after), found.point, missed(before, found.point)) if found.valid else {}
     (ul, vl), (ur, vr) = before.left_uv, before.right_uv
     d = ul - ur + before.doffs
     if d <= 0.0:
@@ -39,7 +56,10 @@ def apart(p: TriangulationParams, more: float) -> dict[str, Any]:
 
 
 def in_sight(left: Pixel, right: Pixel, last: Pixel) -> dict[str, Any]:
-    """The pixels, or, where one is in no picture, the nearest that are, with the depth and the miss if there can be."""
+    """The pixels, or, where one is in no picture, the nearest that are, with the depth and the miss if there can be.
+
+    Those of a parallel rig.
+    """
     (ul, vl), (ur, vr) = left, right
     ur = min(max(ur, ul - last[0]), ul + last[0])
     u = max(-min(ul, ur), 0.0) + min(last[0] - max(ul, ur), 0.0)
@@ -49,3 +69,53 @@ def in_sight(left: Pixel, right: Pixel, last: Pixel) -> dict[str, Any]:
         side: (min(max(x + u, 0.0), last[0]), min(max(y + v, 0.0), last[1]))
         for side, (x, y) in (("left_uv", (ul, vl)), ("right_uv", (ur, vr)))
     }
+
+
+def missed(p: TriangulationParams, point: Array) -> Miss:
+    """By how much the pixels of a state aren't those of a point."""
+    cameras = rig(p)
+    (a, b), (c, d) = (camera.project(point)[0].tolist() for camera in (cameras.left, cameras.right))
+    return (p.left_uv[0] - a, p.left_uv[1] - b), (p.right_uv[0] - c, p.right_uv[1] - d)
+
+
+def seen(cameras: Rig, point: Array, miss: Miss = EXACT) -> dict[str, Any]:
+    """The pixels of a point, or of the nearest that both pictures show at its depth; none behind a camera."""
+    point = _in_both(cameras, point)
+    made: dict[str, Any] = {}
+    both = zip(("left_uv", "right_uv"), (cameras.left, cameras.right), cameras.sizes, miss, strict=True)
+    for name, camera, size, (off_u, off_v) in both:
+        u, v = camera.project(point)[0].tolist()
+        if math.isnan(u):
+            return {}
+        made[name] = _within((u + off_u, v + off_v), size)
+    return made
+
+
+def _in_both(cameras: Rig, point: Array) -> Array:
+    """A point aside, as far before the left camera, that is in both pictures, if there is one.
+
+    What a picture shows at a depth is convex: to go to the one and to the other in turn leads to where both are.
+    """
+    row, center = cameras.left.R[2], cameras.left.center
+    depth = float(row @ (point - center))
+    for _ in range(TRIES):
+        moved = False
+        for camera, size in zip((cameras.left, cameras.right), cameras.sizes, strict=True):
+            u, v = camera.project(point)[0].tolist()
+            at = _within((u, v), size)
+            if not math.dist(at, (u, v)) > 1e-9:
+                continue
+            along = camera.back_projection @ [*at, 1.0]
+            ahead = float(row @ along)
+            further = (depth - float(row @ (camera.center - center))) / ahead if ahead else -1.0
+            if further <= 0.0:
+                return point
+            point, moved = camera.center + further * along, True
+        if not moved:
+            break
+    return np.asarray(point)
+
+
+def _within(pixel: Pixel, size: tuple[int, int]) -> Pixel:
+    u, v = (min(max(x, 0.0), end - 1.0) for x, end in zip(pixel, size, strict=True))
+    return u, v

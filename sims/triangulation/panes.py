@@ -11,10 +11,10 @@ from typing import Literal
 from sims.kit.pane import Pane, Picture
 from sims.kit.readout import quantity
 from sims.kit.scale import Scale
+from sims.kit.types import Pixel
 from sims.kit.world_drawing import draw_in_picture
 from sims.triangulation.corners import WORLD
 from sims.triangulation.depth_plot import plot
-from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, Method, TriangulationParams
 from sims.triangulation.rig import Rig, rig
 from sims.triangulation.solution import TriangulationSolution
@@ -28,17 +28,19 @@ LONG_ENOUGH, SHORTEST = 36.0, 3.0
 def panes(p: TriangulationParams, s: TriangulationSolution) -> Sequence[Pane]:
     """Both pictures and the plot."""
     chosen = s.by_method[p.method]
-    scale = Scale.of(p.width, p.height)
-    times = magnification(chosen.reprojection_left, chosen.reprojection_right, scale.factor)
-    return _picture(p, s, "left", scale, times), _picture(p, s, "right", scale, times), plot(p, s)
+    left, right = (Scale.of(*size) for size in p.sizes)
+    times = magnification(
+        left.factor * (chosen.reprojection_left or 0.0), right.factor * (chosen.reprojection_right or 0.0)
+    )
+    return _picture(p, s, "left", left, times), _picture(p, s, "right", right, times), plot(p, s)
 
 
-def magnification(left: float | None, right: float | None, drawn: float = 1.0) -> int:
+def magnification(left: float | None, right: float | None) -> int:
     """How many times longer than the errors their arrows are, so that the longer one can be seen.
 
-    An error of a pixel is `drawn` so large.
+    Both are in pixels of a picture that is 640 wide.
     """
-    longest = drawn * max(left or 0.0, right or 0.0)
+    longest = max(left or 0.0, right or 0.0)
     if MAGNIFICATIONS[-1] * longest < SHORTEST:
         return 1
     return next((m for m in MAGNIFICATIONS if m * longest >= LONG_ENOUGH), MAGNIFICATIONS[-1])
@@ -49,8 +51,8 @@ def _picture(p: TriangulationParams, s: TriangulationSolution, side: Side, scale
     other: Side = "right" if left else "left"
     held, measured = (p.left_uv, s.measured_left) if left else (p.right_uv, s.measured_right)
     picture = _world(side, rig(p), scale).copy()
-    line = scale.lines(s.line_left if left else s.line_right).tolist()
-    picture.homogeneous_line(line, other, dash="7 5", link=other)
+    if (line := s.line_left if left else s.line_right) is not None:
+        picture.homogeneous_line(scale.lines(line).tolist(), other, dash="7 5", link=other)
     if p.noise > 0.0:
         _measured(picture, scale.at(measured), side)
     if s.true_point is not None:

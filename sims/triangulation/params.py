@@ -8,7 +8,10 @@ from typing import Annotated, Any, Literal, Self
 from sims.kit.fields import Choice, NumberBox, Slider, Switch, Vector
 from sims.kit.frame import HEIGHT, WIDTH
 from sims.kit.params import Params
-from sims.triangulation.holding import Pixel, held_point
+from sims.kit.stereo import LARGEST as LARGEST_OWN
+from sims.kit.stereo import Own, OwnPair, OwnSizes, Size, sizes, usable
+from sims.kit.types import Pixel
+from sims.triangulation.holding import held_point
 
 Method = Literal["dlt", "midpoint", "optimal"]
 NAMES: dict[Method, str] = {"dlt": "DLT", "midpoint": "mid-point", "optimal": "optimal"}
@@ -16,7 +19,7 @@ NEAREST, FARTHEST = (-60.0, 0.0, -50.0), (60.0, 100.0, 50.0)
 """Places, in metres, that can be typed."""
 LAST_SEED = 9999
 LARGEST = 4096
-"""Pixels of a picture's side."""
+"""Pixels of a side of the pictures of a parallel rig."""
 NARROWEST = 1500.0 / WIDTH
 """Greatest focal length, in widths of a picture that isn't small."""
 
@@ -42,11 +45,11 @@ class TriangulationParams(Params):
     """What stays when you change the cameras: the 3D point, as in a real scene, so that its pixels move; or the pixels,
     so that the point moves"""
     left_uv: Annotated[
-        Pixel, Vector((0.0, 0.0), (LARGEST - 1.0,) * 2, step=0.1, unit="px", title="Left point u, v", group=IMAGES)
+        Pixel, Vector((0.0, 0.0), (LARGEST_OWN - 1.0,) * 2, step=0.1, unit="px", title="Left point u, v", group=IMAGES)
     ] = (410.0, 210.0)
     """Where the point is in the left picture, before noise"""
     right_uv: Annotated[
-        Pixel, Vector((0.0, 0.0), (LARGEST - 1.0,) * 2, step=0.1, unit="px", title="Right point u, v", group=IMAGES)
+        Pixel, Vector((0.0, 0.0), (LARGEST_OWN - 1.0,) * 2, step=0.1, unit="px", title="Right point u, v", group=IMAGES)
     ] = (320.0, 210.0)
     """Where the point is in the right picture, before noise"""
     noise: Annotated[float, Slider(0, 5, step=0.05, unit="px", symbol="σ", title="Noise")] = 0
@@ -79,6 +82,15 @@ class TriangulationParams(Params):
         HEIGHT
     )
     """How many pixels a picture has from top to bottom"""
+    own: OwnPair = None
+    """A stereo pair of your own, in place of the parallel cameras: fx, fy, cx, cy of the left and the right camera, the
+    rotation vector in degrees, and T, whose length `baseline` says in metres"""
+    own_size: OwnSizes = None
+    """Width and height of your left and of your right picture; absent: twice as far as their principal points are"""
+    left_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Left camera of the text", group=RIG)] = 1
+    """Which one is the left one, where a text has more than two: the first is 1. Choose before you take the text"""
+    right_of_text: Annotated[int, NumberBox(1, 9, step=1, title="Right camera of the text", group=RIG)] = 2
+    """Which one is the right one, where a text has more than two. Choose before you take the text"""
     before: Annotated[
         tuple[float, float, float] | None,
         Vector(
@@ -89,27 +101,42 @@ class TriangulationParams(Params):
     """Baseline, focal length and noise before a hand began to change one of them: the plot keeps their curve"""
 
     @property
-    def last(self) -> Pixel:
-        """The pixel in the bottom right corner of a picture."""
-        return self.width - 1.0, self.height - 1.0
+    def pair(self) -> Own | None:
+        """Somebody’s pair, if it has focal lengths and a baseline: then its cameras stand in place of the sim’s."""
+        return usable(self.own)
 
     @property
-    def middle(self) -> Pixel:
-        """The pixel in the middle of a picture."""
-        return 0.5 * self.last[0], 0.5 * self.last[1]
+    def sizes(self) -> tuple[Size, Size]:
+        """Pixels of the left and of the right picture, across and down."""
+        if self.pair is None:
+            return (self.width, self.height), (self.width, self.height)
+        return sizes(self.pair, self.own_size)
+
+    @property
+    def last(self) -> Pixel:
+        """The pixel in the bottom right corner of a picture of a parallel rig."""
+        return self.width - 1.0, self.height - 1.0
 
     def form(self) -> tuple[Any, ...]:
-        """The size of the pictures: pixels, which move with every hand, would have all controls made anew."""
-        return self.width, self.height
+        """The cameras and their pictures: pixels, which move with every hand, would have all controls made anew."""
+        return self.width, self.height, self.own, self.own_size
 
     def bounds(self, name: str) -> tuple[float, float]:
         if name == "focal":
             return 200.0, NARROWEST * max(self.width, WIDTH)
         return super().bounds(name)
 
+    def label(self, name: str) -> str:
+        return "Moving b keeps" if name == "hold" and self.pair else super().label(name)
+
+    def about(self, name: str) -> str:
+        if self.pair and name in OF_RIG - {"baseline"}:
+            return "This says nothing of a stereo pair of your own: each of its cameras has its own"
+        return super().about(name)
+
     def ranges(self, name: str) -> Sequence[tuple[float, float]]:
         if name in ("left_uv", "right_uv"):
-            return tuple((0.0, end) for end in self.last)
+            return tuple((0.0, end - 1.0) for end in self.sizes[name == "right_uv"])
         return super().ranges(name)
 
     def moved(self, changes: Mapping[str, Any]) -> Self:

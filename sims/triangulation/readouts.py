@@ -5,15 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from sims.kit.readout import Fold, Formula, Note, Readout, Table, figure, mathml, quantity, row, symbol
-from sims.triangulation.params import IMAGES, NAMES, SURENESS, TriangulationParams
+from sims.kit.readout import (
+    Fold,
+    Formula,
+    Note,
+    Readout,
+    Table,
+    figure,
+    mathml,
+    quantity,
+    row,
+    significant,
+    spelled,
+    symbol,
+)
+from sims.kit.stereo import turned
+from sims.triangulation.calibration import unit
+from sims.triangulation.params import IMAGES, NAMES, RIG, SURENESS, TriangulationParams
 from sims.triangulation.solution import SAMPLES, SIGMAS, TriangulationSolution
 
 VERY_FAR = 1e4
 """Metres of depth from which on coordinates say nothing."""
 TROUBLE = {
-    "parallel": "Parallel rays: no finite point. {zero} is zero, as for something infinitely far away.",
-    "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind the cameras, {behind}.",
+    "parallel": "Parallel rays: no finite point. {zero}, as for something infinitely far away.",
+    "behind": "No point in front of both cameras: the rays diverge, and their lines meet behind {behind}.",
     "undefined": "The pixels are too far away to mean anything.",
 }
 
@@ -22,20 +37,28 @@ METHODS, EQUATIONS = "The three methods", "The equations of DLT"
 BY_PICTURE = ("left", "left", "right", "right")
 
 
+RECTIFIED = "Not rectified: Z = f b / d doesn’t hold here. The point follows from both rays alone."
+
+
 def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
     """Numbers beside the scene."""
     yield from _status(p, s)
-    if s.depth_from_disparity is not None:
+    if p.pair is not None:
+        yield Note(RECTIFIED)
+    if s.depth_from_disparity is not None and s.disparity is not None:
         words = f"Depth from a disparity of {quantity(s.disparity, 'px', 2)}"
         law = f"{symbol('Z')}<mo>=</mo>{fb_over(p.doffs)}"
         yield Formula(words, law, mathml(s.depth_from_disparity), "m", link="baseline focal")
-    if s.point is not None and s.point[1] < VERY_FAR:
+    if s.point is not None and s.depth is not None and s.depth < VERY_FAR:
         yield Formula(_point_in_words(p, s), symbol("X"), row(s.point.tolist()), "m")
+        if p.pair is not None:
+            yield Formula("Depth before the left camera", symbol("Z"), mathml(s.depth), "m")
     if s.depth_sigma is not None and not s.vague:
         yield _depth_sigma(s)
     yield Fold(IMAGES)
     yield _images(p, s)
-    yield Formula("Disparity: left u minus right u", symbol("d"), mathml(s.disparity, 2), "px")
+    if s.disparity is not None:
+        yield Formula("Disparity: left u minus right u", symbol("d"), mathml(s.disparity, 2), "px")
     yield Fold(METHODS)
     yield _methods(p, s)
     yield Formula("Gap between the rays", symbol("g"), mathml(100.0 * s.ray_gap, 2), "cm")
@@ -49,6 +72,25 @@ def readouts(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Reado
     yield from _uncertainty(p, s)
     if p.noise > 0.0:
         yield _noise(p, s)
+    yield Fold(RIG)
+    yield from _own(p, s)
+
+
+def _own(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Readout]:
+    """Numbers of somebody's pair, and what doesn't hold for it."""
+    if p.pair is None:
+        return
+    yield Note(
+        f"The right camera is turned by {quantity(turned(p.pair), '°', 2)} against the left one. {unit(p)} In the scene"
+        " each is turned by half of that, to opposite sides. Pixels are your pictures’, once free of distortion."
+    )
+    if s.point_left is not None and s.depth is not None and s.depth < VERY_FAR:
+        yield Formula("The point in the left camera’s axes", symbol("X", "L"), row(s.point_left.tolist()), "m")
+    for side, K in (("left", s.K_left), ("right", s.K_right)):
+        yield Formula(
+            f"Camera matrix of the {side} camera", symbol("K", side[0].upper()), mathml(K, 2), copy=spelled(K)
+        )
+    yield Formula("Fundamental matrix, of norm 1", symbol("F"), significant(s.F), copy=spelled(s.F))
 
 
 def _point_in_words(p: TriangulationParams, s: TriangulationSolution) -> str:
@@ -67,10 +109,7 @@ def fb_over(doffs: float) -> str:
 
 def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
     if s.status != "found":
-        behind = (
-            f"{quantity(-s.closest_points.item(0, 1), 'm', 2)} away" if s.closest_points is not None else "far away"
-        )
-        yield Note(TROUBLE[s.status].format(behind=behind, zero=_disparity(p, s)), "warn")
+        yield Note(TROUBLE[s.status].format(behind=_behind(p, s), zero=_zero(p, s)), "warn")
     elif s.vague:
         yield Note("Almost parallel rays: a standard deviation of the depth is larger than the depth itself.", "warn")
     elif s.ellipsoid_axes is not None and s.drawn_part < 1.0:
@@ -82,8 +121,22 @@ def _status(p: TriangulationParams, s: TriangulationSolution) -> Iterator[Note]:
         yield Note(f"The methods disagree on whether there is a point: see {' and '.join(others)} below.", "near")
 
 
-def _disparity(p: TriangulationParams, s: TriangulationSolution) -> str:
-    return f"The disparity of {quantity(s.disparity, 'px', 2)} with doffs added" if p.doffs else "The disparity"
+def _behind(p: TriangulationParams, s: TriangulationSolution) -> str:
+    if p.pair is not None:
+        return "a camera"
+    away = "far" if s.closest_points is None else quantity(-s.closest_points.item(0, 1), "m", 2)
+    return f"the cameras, {away} away"
+
+
+def _zero(p: TriangulationParams, s: TriangulationSolution) -> str:
+    """What says that rays are parallel."""
+    if s.disparity is None:
+        return "The angle between them is zero"
+    return (
+        f"The disparity of {quantity(s.disparity, 'px', 2)} with doffs added is zero"
+        if p.doffs
+        else "The disparity is zero"
+    )
 
 
 def _equations(s: TriangulationSolution) -> Iterator[Formula]:
@@ -160,15 +213,17 @@ def _noise(p: TriangulationParams, s: TriangulationSolution) -> Note:
 
 def describe(p: TriangulationParams, s: TriangulationSolution) -> str:
     """One sentence."""
-    base = f"baseline {quantity(p.baseline, 'm', 2)}"
+    base = f"{'a stereo pair of your own, ' if p.pair else ''}baseline {quantity(p.baseline, 'm', 2)}"
     if s.point is None:
-        return f"{TROUBLE[s.status].split(':')[0]}; disparity {quantity(s.disparity, 'px', 1)}, {base}."
-    if s.point[1] >= VERY_FAR or s.depth_sigma is None:
+        disparity = "" if s.disparity is None else f"disparity {quantity(s.disparity, 'px', 1)}, "
+        return f"{TROUBLE[s.status].split(':')[0]}; {disparity}{base}."
+    if s.depth is None or s.depth >= VERY_FAR or s.depth_sigma is None:
         return f"Almost parallel rays: the point is kilometres away, its depth unknown; {base}."
     x, y, z = (figure(v, 2) for v in s.point.tolist())
+    depth = f"depth before the left camera {quantity(s.depth, 'm', 2)}," if p.pair else "depth"
     noise = f"sample {p.seed} of {quantity(p.noise, 'px', 2)} noise; " if p.noise else ""
     name = NAMES[p.method][0].upper() + NAMES[p.method][1:]
     return (
-        f"{name} point {x}, {y}, {z} m; depth plus or minus {quantity(s.depth_sigma, 'm')};"
+        f"{name} point {x}, {y}, {z} m; {depth} plus or minus {quantity(s.depth_sigma, 'm')};"
         f" rays miss by {quantity(100.0 * s.ray_gap, 'cm', 1)}; {noise}{base}."
     )

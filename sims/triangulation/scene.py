@@ -7,40 +7,41 @@ from typing import Literal
 
 import numpy as np
 
-from geometry import quaternion
 from geometry.arrays import Array
-from geometry.camera import R_WORLD_LEVEL
+from geometry.camera import Camera
 from sims.kit.readout import THIN, figure, quantity
 from sims.kit.scene.camera_figure import CameraFigure
 from sims.kit.scene.stage import Stage
-from sims.kit.types import ORIGIN
+from sims.kit.types import ORIGIN, Pixel
 from sims.kit.world_drawing import draw_in_scene
 from sims.triangulation.corners import WORLD
-from sims.triangulation.holding import Pixel
 from sims.triangulation.params import NAMES, TriangulationParams
-from sims.triangulation.rig import rig
+from sims.triangulation.rig import Rig, Standing, rig
 from sims.triangulation.scene_closeup import CloseUp
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
 from sims.triangulation.solution import METHODS, TriangulationSolution
 
-LEVEL = quaternion.from_matrix(R_WORLD_LEVEL).tolist()
 FAR = 12.0
 """Metres that a ray is drawn when it leads to no point."""
 BACKWARD = 4.0
 """Metres that it is drawn backwards, to where the lines of sight meet."""
+LEAST_AHEAD = 0.5
+"""How much of a line of sight leads ahead at least where words stand between both."""
 RADIUS = 0.06
+POST = (0.0, 0.08, -0.12)
+"""Where the post begins on which a camera stands, in its axes."""
 WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
 
 
 def seen(p: TriangulationParams, s: TriangulationSolution) -> list[Array]:
     """What must be in sight."""
-    places = [np.array([sign * p.baseline / 2, 0.0, 1.0]) for sign in (-1, 1)]
+    places = [np.array(each.center) for each in rig(p).standing]
     return places if s.target is None else [*places, s.target]
 
 
 class TriangulationScene:
-    """Both cameras stand at a height of 1 m and look along Y."""
+    """Both cameras stand at a height of 1 m, or its middle is there, and look along Y, or to both sides of it."""
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)
@@ -65,11 +66,13 @@ class TriangulationScene:
 
     def draw(self, p: TriangulationParams, s: TriangulationSolution) -> None:
         cameras = rig(p)
-        half = 0.5 * p.baseline
-        left, right = self.cameras
-        left.draw(cameras.corners_left, cameras.size, s, s.sight_left, -half)
-        right.draw(cameras.corners_right, cameras.size, s, s.sight_right, half)
-        self.baseline.stroke(((-half, 0.0, 1.0), (half, 0.0, 1.0)))
+        left, right = cameras.standing
+        sights = (left, cameras.left, s.sight_left), (right, cameras.right, s.sight_right)
+        for k, (drawn, (standing, camera, sight)) in enumerate(zip(self.cameras, sights, strict=True)):
+            drawn.stand(standing, camera, cameras.size, sight)
+            behind = s.closest_points[k] if s.status == "behind" and s.closest_points is not None else None
+            drawn.look(*(None if at is None else camera.to_camera(at).item(2) for at in (s.point, behind)))
+        self.baseline.stroke((left.center, right.center))
         self.baseline_label.text(f"baseline {quantity(p.baseline, 'm', 2)}")
         self._held(s)
         for name, shape in self.points.items():
@@ -79,7 +82,7 @@ class TriangulationScene:
         self.region.draw(p, s, at)
         self._gap(s)
         self._in_words(p, s, at, self.closeup.draw(p, s))
-        self._warn(s)
+        self._warn(s, cameras)
 
     def highlight(self, name: str) -> None:
         """Highlight what somebody hovers over: an image point's ray, the point of a method, or the true point."""
@@ -111,15 +114,16 @@ class TriangulationScene:
         digits = 2 if s.depth_sigma is None or s.depth_sigma >= 0.005 else 4
         unsure = f" ± {figure(s.depth_sigma, digits)}" if s.depth_sigma is not None and not s.vague else ""
         cut = ", ellipsoid cut" if p.show_ellipsoid and s.drawn_part < 1.0 and not s.vague else ""
-        self.words.text(f"{NAMES[p.method]}: depth {figure(y, digits)}{unsure}{THIN}m{cut}")
+        self.words.text(f"{NAMES[p.method]}: depth {figure(s.depth or 0.0, digits)}{unsure}{THIN}m{cut}")
 
-    def _warn(self, s: TriangulationSolution) -> None:
+    def _warn(self, s: TriangulationSolution, cameras: Rig) -> None:
         self.warning.show(s.point is None or s.vague)
         if s.point is not None and not s.vague:
             return
         self.warning.text(WARNINGS.get(s.status, "⚠ almost parallel: depth unknown"))
-        x = 0.5 * (s.sight_left[0] + s.sight_right[0])
-        self.warning.pose(position=(3.0 * x, 3.0, 1.5))
+        sights = (cameras.left, s.sight_left), (cameras.right, s.sight_right)
+        x, y = np.mean([camera.R.T[:2] @ [*sight, 1.0] for camera, sight in sights], axis=0).tolist()
+        self.warning.pose(position=(3.0 * x / max(y, LEAST_AHEAD), 3.0, 1.5))
 
 
 class CameraInScene:
@@ -129,7 +133,7 @@ class CameraInScene:
         path = f"/{name}"
         self.name = name
         self.figure = CameraFigure(stage, path, name, letter)
-        stage.lines(f"{path}/post", "ghost", [(0.0, 0.08, -0.12), (0.0, 1.0, -0.12)], width=1.2)
+        self.post = stage.lines(f"{path}/post", "ghost", width=1.2)
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
         self.ray = stage.lines(f"{path}/ray", name, width=1.8)
         stage.linked("focal", self.figure.edges)
@@ -137,21 +141,29 @@ class CameraInScene:
         self.back = stage.lines(f"{path}/back", name, width=1.5, dash=(0.08, 0.08))
         self.highlighted = stage.lines(f"{path}/lit", name, width=6.0)
         self.highlighted.show(False)
+        self.sight: Pixel = (0.0, 0.0)
         self.end = ORIGIN
 
-    def draw(self, corners: Array, size: float, s: TriangulationSolution, sight: Pixel, at: float) -> None:
-        self.figure.node.pose(LEVEL, (at, 0.0, 1.0))
-        self.figure.draw(corners, size)
-        x, y = sight
-        near = corners.item(0, 2)
+    def stand(self, standing: Standing, camera: Camera, size: float, sight: Pixel) -> None:
+        """Draw the camera with its measured pixel; `sight` is x and y of that at depth 1, in the camera's axes."""
+        self.figure.node.pose(standing.wxyz, standing.center)
+        self.figure.draw(standing.corners, size)
+        down = (standing.center[2] - POST[1]) * camera.R[:, 2]
+        self.post.stroke((POST, tuple((POST - down).tolist())))
+        near = standing.corners.item(0, 2)
+        self.sight = x, y = sight
         self.pixel.pose(position=(x * near, y * near, near))
         self.pixel.scale(size)
-        far = FAR if s.depth is None else 1.2 * in_steps(s.depth) + 0.15
+
+    def look(self, depth: float | None, behind: float | None) -> None:
+        """Draw the line of sight: to a point's depth, or back to where it is nearest the other one, if either is."""
+        x, y = self.sight
+        far = FAR if depth is None else 1.2 * in_steps(depth) + 0.15
         self.end = x * far, y * far, far
         self.ray.stroke((ORIGIN, self.end))
-        self.back.show(s.status == "behind")
-        if s.status == "behind":
-            back = max(0.0 if s.closest_points is None else s.closest_points.item(0, 1), -BACKWARD)
+        back = 0.0 if behind is None else min(max(behind, -BACKWARD), 0.0)
+        self.back.show(back < 0.0)
+        if back < 0.0:
             self.back.path([ORIGIN, (x * back, y * back, back)])
 
     def highlight(self, name: str) -> None:

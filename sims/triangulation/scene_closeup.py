@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from geometry.arrays import Array
 from sims.kit.scene.stage import Stage
 from sims.triangulation.params import NAMES, TriangulationParams
+from sims.triangulation.rig import Rig, rig
 from sims.triangulation.scene_region import SEEN_GAP, Region, gap_in_words, in_steps
 from sims.triangulation.scene_shapes import Shape
 from sims.triangulation.solution import METHODS, SIGMAS, TriangulationSolution
@@ -71,7 +72,7 @@ class CloseUp:
             shape.draw(place, name == p.method, DOT * radius)
             self.names[name].show(place is not None and math.hypot(*place) > 0.15 * radius)
         self.true.place(_larger(times, true))
-        self._rays(s, origin, times, radius)
+        self._rays(rig(p), s, origin, times, radius)
         self.region.draw(p, s, (0.0, 0.0, 0.0), times)
         self.label.text(f"close-up ×{times:g}" + (", 3σ" if p.show_ellipsoid else ""))
         self.gap_label.show(s.ray_gap > SEEN_GAP)
@@ -94,13 +95,15 @@ class CloseUp:
         for name, label in self.names.items():
             label.pose(position=[DOT * radius * v for v in BESIDE[name][1]])
 
-    def _rays(self, s: TriangulationSolution, origin: Place, times: float, radius: float) -> None:
+    def _rays(self, cameras: Rig, s: TriangulationSolution, origin: Place, times: float, radius: float) -> None:
         if s.closest_points is None:
             return
         near = [_larger(times, _from(origin, point)) or origin for point in s.closest_points]
         left, right = (
-            chord(at, (x, 1.0, -down), radius)
-            for at, (x, down) in zip(near, (s.sight_left, s.sight_right), strict=True)
+            chord(at, (camera.R.T @ [*sight, 1.0]).tolist(), radius)
+            for at, camera, sight in zip(
+                near, (cameras.left, cameras.right), (s.sight_left, s.sight_right), strict=True
+            )
         )
         self.rays.draw((left, right, near))
 

@@ -13,9 +13,10 @@ import numpy as np
 from geometry import quaternion
 from geometry import triangulation as tri
 from geometry.arrays import Array
-from geometry.epipolar import epipolar_line_left, epipolar_line_right
+from geometry.epipolar import epipolar_line_left, epipolar_line_right, sampson_distance
+from sims.kit.stereo import Size
+from sims.kit.types import Pixel
 from sims.triangulation import corners
-from sims.triangulation.holding import Pixel
 from sims.triangulation.params import Method, TriangulationParams
 from sims.triangulation.rig import Rig, rig
 
@@ -31,6 +32,8 @@ DRAWN = 0.5
 """Depths of the point, to both sides of it, up to which it is drawn: a longer one would hide the scene."""
 UNSEEN = 1e-9
 """Pixels of noise up to which nothing of it is seen."""
+MEET = 1e-6
+"""Pixels that pixels are moved by at most for their rays to meet, where these came from one point but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -48,14 +51,21 @@ class MethodResult:
 
 @dataclass(frozen=True)
 class TriangulationSolution:
-    """What doesn't exist is None. `covariance` and what follows from it are for `sigma_px` pixels of noise."""
+    """What doesn't exist is None. `covariance` and what follows from it are for `sigma_px` pixels of noise.
+
+    Disparity and the depth from it exist in parallel rigs alone.
+    """
 
     point: Array | None
     status: str
     by_method: Mapping[Method, MethodResult]
     ray_gap: float
     closest_points: Array | None
-    disparity: float
+    depth: float | None
+    """How far in front of the left camera the point is, along its optical axis."""
+    point_left: Array | None
+    """The point in the left camera's axes: x right, y down, z forward."""
+    disparity: float | None
     depth_from_disparity: float | None
     sigma_px: float
     covariance: Array | None
@@ -73,8 +83,15 @@ class TriangulationSolution:
     in_front: bool
     measured_left: Pixel
     measured_right: Pixel
-    line_left: Array
-    line_right: Array
+    size_left: Size
+    size_right: Size
+    K_left: Array
+    K_right: Array
+    F: Array
+    """right^T F left = 0 for pixels, of norm 1."""
+    line_left: Array | None
+    """None where the right pixel is the epipole: then every left one may be its partner."""
+    line_right: Array | None
     target: Array | None
     """The point without noise, which the learner holds."""
     true_point: Array | None
@@ -91,11 +108,6 @@ class TriangulationSolution:
     """Singular vector of the least of them: the point of the linear method, homogeneous."""
     matched: corners.Matched | None
     """The corner of the little world on which both image points are."""
-
-    @property
-    def depth(self) -> float | None:
-        """How far in front of the cameras the point is."""
-        return None if self.point is None else float(self.point[1])
 
     @property
     def drawn_part(self) -> float:
@@ -119,7 +131,8 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
     assert isinstance(middle, tri.Midpoint)
     by_method: dict[Method, MethodResult] = {name: _result(cameras, each, left, right) for name, each in found.items()}
     point = by_method[p.method].point
-    disparity = float(tri.disparity(left, right))
+    at_left = None if point is None else cameras.left.to_camera(point)
+    disparity = None if p.pair else float(tri.disparity(left, right))
     target = point if p.noise == 0.0 else _point(METHODS[p.method](cameras.left, cameras.right, p.left_uv, p.right_uv))
     return TriangulationSolution(
         point=point,
@@ -127,24 +140,31 @@ def solve(p: TriangulationParams) -> TriangulationSolution:
         by_method=by_method,
         ray_gap=float(middle.gap),
         closest_points=_existing(middle.closest),
+        depth=None if at_left is None else at_left.item(2),
+        point_left=at_left,
         disparity=disparity,
-        depth_from_disparity=_positive(float(tri.depth_from_disparity(disparity, p.baseline, p.focal, p.doffs))),
+        depth_from_disparity=None if disparity is None else _from_disparity(p, disparity),
         **_uncertainty(cameras, point, sigma_of(p.noise)),
         parallax_angle=math.degrees(float(chosen.parallax)),
         ray_angle=math.degrees(float(middle.parallax)),
-        point_angle=None if point is None else _angle_at(point, p.baseline),
+        point_angle=None if point is None else _angle_at(point, cameras),
         in_front=bool(chosen.in_front),
         measured_left=left,
         measured_right=right,
-        line_left=epipolar_line_left(cameras.F, right),
-        line_right=epipolar_line_right(cameras.F, left),
+        size_left=cameras.sizes[0],
+        size_right=cameras.sizes[1],
+        K_left=cameras.left.K,
+        K_right=cameras.right.K,
+        F=cameras.F,
+        line_left=_existing(epipolar_line_left(cameras.F, right)),
+        line_right=_existing(epipolar_line_right(cameras.F, left)),
         target=target,
-        true_point=target if p.noise > 0.0 and p.left_uv[1] == p.right_uv[1] else None,
+        true_point=target if p.noise > 0.0 and _meet(p, cameras) else None,
         cloud=_cloud(cameras, left, right, p.noise, p.seed) if point is not None else NO_POINTS,
         sight_left=pair(cameras.left.normalized(left)),
         sight_right=pair(cameras.right.normalized(right)),
         **_linear(cameras, left, right),
-        matched=corners.matched(cameras.world, p.left_uv, p.right_uv, p.width, point),
+        matched=_matched(p, cameras, point, at_left),
     )
 
 
@@ -189,11 +209,30 @@ def _result(cameras: Rig, found: tri.Triangulation, left: Pixel, right: Pixel) -
     return MethodResult(found.point, status, a, b, math.hypot(a, b) / math.sqrt(2.0), at_left, at_right)
 
 
-def _angle_at(point: Array, baseline: float) -> float:
-    """Degrees at a point between the lines to both cameras, which stand at a height of 1 m."""
-    x, y, z = point.tolist()
-    flat = math.hypot(y, z - 1.0)  # from the line through both cameras
-    return math.degrees(math.atan2(x + 0.5 * baseline, flat) - math.atan2(x - 0.5 * baseline, flat))
+def _from_disparity(p: TriangulationParams, disparity: float) -> float | None:
+    depth = float(tri.depth_from_disparity(disparity, p.baseline, p.focal, p.doffs))
+    return depth if depth > 0.0 else None
+
+
+def _meet(p: TriangulationParams, cameras: Rig) -> bool:
+    """Whether the rays of the pixels without noise meet."""
+    if p.pair is None:
+        return p.left_uv[1] == p.right_uv[1]
+    return float(sampson_distance(cameras.F, p.left_uv, p.right_uv)) < MEET
+
+
+def _matched(
+    p: TriangulationParams, cameras: Rig, point: Array | None, at_left: Array | None
+) -> corners.Matched | None:
+    depth = 0.0 if at_left is None else at_left.item(2)
+    return corners.matched(cameras.world, p.left_uv, p.right_uv, cameras.sizes, point, depth)
+
+
+def _angle_at(point: Array, cameras: Rig) -> float:
+    """Degrees at a point between the lines to both cameras."""
+    to_left, between = cameras.left.center - point, cameras.right.center - cameras.left.center
+    across = np.linalg.norm(np.cross(to_left, between))
+    return math.degrees(math.atan2(across, to_left @ (to_left + between)))
 
 
 def _linear(cameras: Rig, left: Pixel, right: Pixel) -> dict[str, Any]:
@@ -210,7 +249,8 @@ def _uncertainty(cameras: Rig, point: Array | None, sigma: float) -> dict[str, A
     if known is None:
         return {"sigma_px": sigma, **dict.fromkeys(names)}
     lengths, directions = tri.ellipsoid_axes(known)
-    values = known, lengths, quaternion.from_matrix(directions), math.sqrt(known.item(1, 1))
+    forward = cameras.left.R[2]
+    values = known, lengths, quaternion.from_matrix(directions), math.sqrt(forward @ known @ forward)
     return {"sigma_px": sigma, **dict(zip(names, values, strict=True))}
 
 
@@ -220,10 +260,6 @@ def _point(found: tri.Triangulation) -> Array | None:
 
 def _existing(array: Array) -> Array | None:
     return array if math.isfinite(array.sum()) else None
-
-
-def _positive(value: float) -> float | None:
-    return value if value > 0.0 else None
 
 
 def pair(array: Array) -> Pixel:

@@ -2,7 +2,7 @@
 import { unpacked } from "./film.js";
 import { column, Query, sim } from "../viewer/page.js";
 import { View } from "../viewer/view.js";
-import { describeScene, drawnVersion, prepare, show, start } from "../viewer/viser_dom.js";
+import { describeScene, drawnVersion, lookFrom, prepare, show, start } from "../viewer/viser_dom.js";
 
 const LOOKING = 30; // milliseconds between two looks at whether the scene is there
 const EACH = 100; // milliseconds of a frame that plays
@@ -20,7 +20,7 @@ class Home {
     });
     this.button?.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
     const options = new Query(sim.options);
-    this.view = new View({ send: ({ view }) => this.look(view) }, { options, show() {} }, () => {});
+    this.view = new View({ send: ({ view }) => lookFrom(view) }, { options, show() {} }, () => {});
     column.addEventListener("click", ({ target }) => target.closest("[data-home]") && this.view.goHome());
     prepare(this.view.first, (view) => this.view.looked(view), () => this.goBlind());
     start();
@@ -59,13 +59,6 @@ class Home {
     clearInterval(this.playing);
     this.playing = 0;
     this.button.textContent = "Play";
-  }
-
-  look([x, y, z, u, v, w]) {
-    show([
-      { type: "SetCameraPositionMessage", position: [x, y, z], initial: false },
-      { type: "SetCameraLookAtMessage", look_at: [u, v, w], initial: false },
-    ]);
   }
 
   goBlind() {

@@ -7,11 +7,13 @@ import { Handles } from "./handles.js";
 import { Height } from "./height.js";
 import { Highlight } from "./highlight.js";
 import { Host } from "./host.js";
+import { Lead } from "./lead.js";
 import { Live } from "./live.js";
 import { Pace } from "./pace.js";
 import { sim } from "./page.js";
 import { Parts } from "./parts.js";
 import { Paste } from "./paste.js";
+import { Pointer } from "./pointer.js";
 import { Strip } from "./strip.js";
 import { Toolbar } from "./toolbar.js";
 import { Trouble } from "./trouble.js";
@@ -36,10 +38,12 @@ class Page {
     this.controls = new Controls(this.channel, this.pace);
     this.handles = new Handles(this.pace, this.highlight);
     this.parts = new Parts(this.pace, this.controls, this.handles, this.highlight, () => this.change({}));
+    this.pointer = new Pointer(this.channel);
     this.files = new Files(this.words);
     this.host = new Host(this.channel, this.address, this.highlight);
     this.height = new Height(this.host);
-    this.view = new View(this.channel, this.address, () => this.height.tellSoon());
+    this.view = new View(this.channel, this.address, () => this.resized());
+    this.lead = new Lead(this.view);
     this.paste = new Paste(this.words);
     this.live = new Live(this.channel, this.address, this.view);
     this.toolbar = new Toolbar(this.address, this.words, this.files, this.view, this.paste, this.live);
@@ -51,7 +55,9 @@ class Page {
       show: (message) => this.takeParts(message),
       home: (message) => this.view.found(message),
       room: (message) => this.live.hear(message),
+      led: (message) => this.lead.hear(message),
       point: ({ name }) => this.highlight.others(name),
+      over: () => this.pointer.pace.answered(),
       error: (message) => this.fail(message),
       work: (message) => this.work.show(message),
     };
@@ -63,7 +69,7 @@ class Page {
     this.trouble.lost();
     this.address.show();
     this.channel.open();
-    prepare(this.view.first, (view) => this.view.looked(view), () => this.goBlind());
+    prepare(this.view.first, (view) => this.looked(view), () => this.goBlind());
     start();
     this.looking = setInterval(() => this.goLive(), LOOKING);
   }
@@ -76,6 +82,7 @@ class Page {
   lost(code, reason) {
     this.trouble.lost(code, reason);
     this.pace.answered();
+    this.pointer.pace.answered();
     this.work.show({ text: "" });
   }
 
@@ -133,6 +140,18 @@ class Page {
     this.words.describe(this.state.text, this.view.words);
     this.host.post({ type: "sim3:ready" });
     this.height.begin();
+    this.lead.again();
+  }
+
+  resized() {
+    this.height.tellSoon();
+    this.lead.again();
+  }
+
+  // On its way the view of who is led is no news for the server.
+  looked(view) {
+    this.view.looked(view);
+    return this.lead.gliding;
   }
 }
 

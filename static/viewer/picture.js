@@ -1,5 +1,5 @@
 // The scene as a picture, once it shows a state.
-import { drawnVersion, paintedCanvas } from "./viser_dom.js";
+import { drawnVersion, sceneCanvas } from "./viser_dom.js";
 
 const PATIENCE = 5000; // milliseconds after which a scene that isn't drawn has no picture
 const frame = () => new Promise(requestAnimationFrame);
@@ -14,5 +14,5 @@ export async function picture(version) {
   await frame();
   await frame();
   await frame();
-  return paintedCanvas()?.toDataURL("image/png") ?? null;
+  return sceneCanvas()?.toDataURL("image/png") ?? null;
 }

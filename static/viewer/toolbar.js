@@ -3,7 +3,7 @@ import { dialog } from "./dialog.js";
 import { copied, download } from "./giving.js";
 import { column, sim } from "./page.js";
 import { TakeHome } from "./take_home.js";
-import { paintedCanvas } from "./viser_dom.js";
+import { sceneCanvas } from "./viser_dom.js";
 
 export class Toolbar {
   constructor(address, words, files, view, paste, live) {
@@ -18,6 +18,7 @@ export class Toolbar {
       "take-home": () => this.takeHome.open(),
       present: () => live.present(),
       keys: showKeys,
+      more: unfold,
       download: (button) => download(`${sim.place}result/${button.value}`, button.value),
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.look("home"),
@@ -68,6 +69,15 @@ export class Toolbar {
   }
 }
 
+// What is seldom wanted; at the foot of the column it is scrolled into sight.
+function unfold(button) {
+  const rest = document.getElementById(button.getAttribute("aria-controls"));
+  rest.hidden = !rest.hidden;
+  button.ariaExpanded = String(!rest.hidden);
+  const below = rest.getBoundingClientRect().bottom - column.getBoundingClientRect().bottom;
+  if (below > 0) column.scrollTop += below;
+}
+
 // A picture covers the scene, or goes back to its place; it stays live. Two that stand side by side do so together.
 function enlarge(figure) {
   const pair = !figure.matches(".s3-wide") && figure.parentElement.querySelectorAll(".s3-pane:not(.s3-wide)").length > 1;
@@ -79,7 +89,7 @@ function enlarge(figure) {
 }
 
 function savePicture() {
-  const canvas = paintedCanvas();
+  const canvas = sceneCanvas();
   requestAnimationFrame(() => download(canvas.toDataURL("image/png"), `${sim.slug}.png`));
 }
 

@@ -11,14 +11,23 @@ const TURNS = /^(Arrow\w+|[wasdqe])$/i; // viser's own keys
 const KEYS = { 1: "front", 2: "side", 3: "top", "+": "in", "=": "in", "-": "out", Home: "home" };
 const FROM = { front: [0, -1, 0], side: [1, 0, 0], top: [0, -1e-3, 1] };
 
-// A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits. The
-// server does the same for the views that it finds later (sims/kit/scene/view.py).
+// A viewpoint is chosen for a landscape scene; in a tall or narrow one, step back so that the same sphere fits.
 export function fit() {
   const target = sim.view.slice(3);
   const away = sim.view.slice(0, 3).map((v, i) => v - target[i]);
-  const half = Math.tan(sim.field / 2) * Math.min(1, Math.max(scene.clientWidth, 1) / Math.max(scene.clientHeight, 1));
-  const scale = sim.radius ? sim.radius / Math.sin(Math.atan(half)) / Math.hypot(...away) : 1;
+  const scale = sim.radius ? sim.radius * distance(shape()) / Math.hypot(...away) : 1;
   return [...away.map((v, i) => target[i] + v * scale), ...target];
+}
+
+// From how far away a sphere of radius 1 fits into a page of some width over height. The server does the same for the
+// views that it finds later (sims/kit/scene/view.py).
+export function distance(aspect) {
+  return 1 / Math.sin(Math.atan(Math.tan(sim.field / 2) * Math.min(1, aspect)));
+}
+
+// Width over height of the scene.
+export function shape() {
+  return Math.max(scene.clientWidth, 1) / Math.max(scene.clientHeight, 1);
 }
 
 export class View {

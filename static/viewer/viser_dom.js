@@ -6,17 +6,24 @@ const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
 const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
 const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
+const COARSER = 0.75; // of the resolution, where a machine needs more than SLOW milliseconds for half of its frames
+const SLOW = 40;
+const QUICK = 20; // milliseconds with which it gets the whole one back; a coarser frame has half the pixels
+const SAMPLES = 16; // frames between two such decisions
 let viewer = null; // viser's own state, once it is there
+let eye = null; // what viser's camera last said of itself
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
-// `looked` hears of each view from which the scene is seen, `blind` that the browser draws no 3D.
+// `looked` hears of each view from which the scene is seen, and says whether the server needn't; `blind` hears that the
+// browser draws no 3D.
 export function prepare(view, looked, blind) {
   const search = new Query({
     websocket: `${sim.socket}?viewer=${sim.viewer}`,
     initialCameraPosition: view.slice(0, 3).join(","),
     initialCameraLookAt: view.slice(3).join(","),
     initialCameraFov: `${sim.field}`,
+    fixedDpr: `${wholeResolution()}`,
     ...(sim.dark ? { darkMode: "1" } : {}),
   });
   window.URLSearchParams = class extends Query {
@@ -87,7 +94,7 @@ function adopt(looked) {
     get: () => viewer,
     set: (mutable) => {
       viewer = mutable;
-      drawLess(mutable);
+      drawLess(mutable, sharpness(mutable));
       watchCamera(mutable, looked);
     },
   });
@@ -95,7 +102,7 @@ function adopt(looked) {
 
 // viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. Two frames show
 // a change, and one more, when nothing has changed for a while, what comes late.
-function drawLess(mutable) {
+function drawLess(mutable, drawn) {
   const whole = mutable.requestRender;
   let late = 0;
   const frames = (count) => mutable.scene.__r3f.root.getState().invalidate(count);
@@ -105,20 +112,76 @@ function drawLess(mutable) {
       return;
     }
     frames(2);
+    requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
     clearTimeout(late);
     late = setTimeout(() => frames(1), SETTLED);
   };
   Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
 }
 
+// Pixels of the screen for one of the page, within the bounds that viser's client has too.
+function wholeResolution() {
+  return Math.min(Math.max(devicePixelRatio, 1), 2);
+}
+
+// viser's client lowers its resolution when few frames come, as they do here whenever little changes; and each change of
+// it holds up a frame. It keeps one instead, coarser only where two frames that follow each other take long. What comes
+// back is told how long they took. The resolution follows a page that is zoomed.
+function sharpness(mutable) {
+  const root = mutable.scene.__r3f.root;
+  let share = 1;
+  let times = [];
+  const keep = ({ viewport, setDpr }) => {
+    const wanted = share * wholeResolution();
+    if (viewport.dpr !== wanted) setDpr(wanted);
+  };
+  root.subscribe(keep);
+  return (took) => {
+    times.push(took);
+    if (times.length < SAMPLES) return;
+    const middle = times.sort((a, b) => a - b)[SAMPLES / 2];
+    times = [];
+    share = middle > SLOW ? COARSER : middle < QUICK ? 1 : share;
+    keep(root.getState());
+  };
+}
+
+// From where the scene is looked at: the viewpoint x, y, z, and the place that it looks at.
+export function lookFrom([x, y, z, u, v, w]) {
+  if (!viewer) return;
+  show([
+    { type: "SetCameraPositionMessage", position: [x, y, z], initial: false },
+    { type: "SetCameraLookAtMessage", look_at: [u, v, w], initial: false },
+  ]);
+}
+
 // What viser tells the server of its camera tells us from where the scene is looked at.
 function watchCamera(mutable, looked) {
   let send = mutable.sendMessage;
   const watched = (message) => {
-    if (message.type === "ViewerCameraMessage") looked([...message.position, ...message.look_at]);
+    if (message.type === "ViewerCameraMessage") {
+      eye = message;
+      if (looked([...message.position, ...message.look_at])) return;
+    }
     send(message);
   };
   Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
+}
+
+// The ray through a place on the page, where the scene is: origin, then direction; null before there is a camera.
+export function rayThrough({ clientX, clientY }) {
+  const canvas = sceneCanvas();
+  if (!eye || !canvas) return null;
+  const { left, top, width, height } = canvas.getBoundingClientRect();
+  const half = Math.tan(eye.fov / 2) * (2 / height);
+  const [x, y] = [(clientX - left - width / 2) * half, (clientY - top - height / 2) * half];
+  const [qw, qx, qy, qz] = eye.wxyz; // right, down and forward of the camera in the world
+  return [
+    ...eye.position,
+    (1 - 2 * (qy * qy + qz * qz)) * x + 2 * (qx * qy - qw * qz) * y + 2 * (qx * qz + qw * qy),
+    2 * (qx * qy + qw * qz) * x + (1 - 2 * (qx * qx + qz * qz)) * y + 2 * (qy * qz - qw * qx),
+    2 * (qx * qz - qw * qy) * x + 2 * (qy * qz + qw * qx) * y + 1 - 2 * (qx * qx + qy * qy),
+  ];
 }
 
 // Which version of the state the scene shows; undefined before it shows any.
@@ -149,16 +212,10 @@ function avoidModuleWorkers() {
   };
 }
 
-// viser makes a new canvas when it connects anew, and leaves the old one for a while: the scene is what is seen.
+// The canvas that the scene is painted on. viser makes a new one when it connects anew, and leaves the old one for a
+// while; to look for it among them by its size would lay the page out at each key and each state.
 export function sceneCanvas() {
-  const area = (canvas) => canvas.clientWidth * canvas.clientHeight;
-  return [...scene.querySelectorAll("canvas")].reduce((best, one) => (best && area(best) >= area(one) ? best : one), null);
-}
-
-// The one that is painted: another, without pixels of its own, may lie over it.
-export function paintedCanvas() {
-  const pixels = (canvas) => canvas.width * canvas.height;
-  return [...scene.querySelectorAll("canvas")].filter(pixels).sort((a, b) => pixels(b) - pixels(a))[0];
+  return viewer?.canvas ?? null;
 }
 
 // The scene can have the focus; people who don't see it hear what is there.

@@ -6,7 +6,7 @@ import asyncio
 import gc
 import logging
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Self
 
 import httpx
@@ -65,11 +65,17 @@ class Local:
 
     def sweep(self) -> None:
         """Look now at which sessions can go."""
+        self._do(self.services.sessions.sweep)
 
-        async def swept() -> None:
-            self.services.sessions.sweep()
+    def drain(self) -> None:
+        """Take no new rooms, as a server that ends soon."""
+        self._do(self.services.sessions.drain)
 
-        asyncio.run_coroutine_threadsafe(swept(), self._host.loop).result(PATIENCE)
+    def _do(self, work: Callable[[], None]) -> None:
+        async def done() -> None:
+            work()
+
+        asyncio.run_coroutine_threadsafe(done(), self._host.loop).result(PATIENCE)
 
     def close(self) -> None:
         self.http.close()

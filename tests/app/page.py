@@ -106,6 +106,11 @@ class Page:
         return params
 
     @property
+    def led(self) -> dict[str, Any]:
+        """From where the page was told last to look, as somebody else does."""
+        return next((m for m in reversed(self.told) if m["type"] == "led"), {})
+
+    @property
     def errors(self) -> list[str]:
         """What the page was told to be wrong."""
         return [m["message"] for m in self.told if m["type"] == "error"]

@@ -7,7 +7,7 @@ import re
 import secrets
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import httpx
 import pytest
@@ -47,10 +47,17 @@ class Socket:
         self.socket.close()
 
 
+class Serves(Protocol):
+    """Where a class is to be."""
+
+    @property
+    def url(self) -> str: ...
+
+
 class Teacher(Socket):
     """Opens a class with a key of their own, or brings one back."""
 
-    def __init__(self, local: Local, *, key: str = "", page: str = ALONE, query: str = "", **more: Any) -> None:
+    def __init__(self, local: Serves, *, key: str = "", page: str = ALONE, query: str = "", **more: Any) -> None:
         self.key = key or new_key()
         self.code = code_of(self.key)
         first = {"type": "open", "page": page, "query": query, **more}
@@ -67,7 +74,7 @@ class Teacher(Socket):
 class Learner(Socket):
     """Joins a class."""
 
-    def __init__(self, local: Local, code: str, *, me: str = "", animal: str = "") -> None:
+    def __init__(self, local: Serves, code: str, *, me: str = "", animal: str = "") -> None:
         self.me = me or secrets.token_hex(8)
         super().__init__(f"{local.url}/class/{code}", {"type": "join", "me": self.me, "animal": animal})
         self.welcome = self.hear("class")

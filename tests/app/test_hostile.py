@@ -423,8 +423,9 @@ def test_who_only_watches_may_send_nonsense_too(local: Local, learner: Page) -> 
         watcher.slide("yaw", 5.0)
         watcher.enter("order", "xyz")
         watcher.tell({"type": "action", "name": "reset"})
+        watcher.tell({"type": "over", "ray": [0, 0, 5, 0, 0, -1]})
         watcher.send(DRAG)
-        local.refused("watching", before + 3)
+        local.refused("watching", before + 4)
         watcher.settle()
         assert watcher.params["order"] == "zyx"
     learner.works()

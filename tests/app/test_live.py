@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import ExitStack
 from typing import Any
@@ -10,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sims.kit.scene.view import FIELD, Seen
+from app.rooms import telling
+from sims.kit.scene.view import FIELD
 from tests.app.conftest import Local
 from tests.app.page import Page, closed, connect
 from tests.server import camera_message
@@ -65,8 +65,8 @@ def part(page: Page) -> dict[str, Any]:
 
 
 def seen_from(page: Page) -> tuple[float, ...]:
-    """Where the server has put a page's viewpoint; nothing if it hasn't yet."""
-    return tuple(page.model.latest.get("SetCameraPositionMessage", {}).get("position", ()))
+    """Where the server has led a page's viewpoint; nothing if it hasn't yet."""
+    return tuple(page.led.get("view", ())[:3])
 
 
 def look(page: Page, position: tuple[float, float, float], **more: Any) -> None:
@@ -120,16 +120,26 @@ def test_who_had_let_go_before_the_connection_broke_off_is_not_led(room: Room) -
     assert not seen_from(free)
 
 
-def test_a_narrow_page_sees_what_fits_into_a_wide_one(room: Room) -> None:
+def test_all_who_follow_are_told_the_same_and_it_is_encoded_once(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    watchers = [room.watch() for _ in range(3)]
+    look(room.teacher, FROM_BELOW)
+    for watcher in watchers:
+        led_to(watcher, FROM_BELOW)
+    encoded: list[str] = []
+    whole = telling.encode
+
+    def counted(message: Any) -> str:
+        encoded.append(message["type"])
+        return whole(message)
+
+    monkeypatch.setattr(telling, "encode", counted)
     look(room.teacher, FROM_ABOVE, image_width=1600, image_height=800)
-    watcher = room.watch()
-    led_to(watcher, FROM_ABOVE)
-    look(watcher, FROM_ABOVE, image_width=400, image_height=800)  # it is turned upright
-    watcher.until(lambda: seen_from(watcher)[2] > 6.5, "a view from farther away")
-    half = math.tan(FIELD / 2)
-    away = math.sin(math.atan(half)) / math.sin(math.atan(half / 2))
-    target = np.array(watcher.model.latest["SetCameraLookAtMessage"]["look_at"])
-    assert np.allclose(seen_from(watcher), target + (np.array(FROM_ABOVE) - target) * away)
+    room.teacher.slide("yaw", 33)
+    for watcher in watchers:
+        led_to(watcher, FROM_ABOVE)
+        watcher.until(lambda page=watcher: page.params["yaw"] == 33, "the state")  # type: ignore[misc]
+    assert watchers[0].led["aspect"] == 2.0, "pages of other shapes see the same"
+    assert encoded.count("led") == encoded.count("show") == 1
 
 
 def test_watchers_lead_nobody_and_hand_nothing_over(local: Local, room: Room) -> None:
@@ -240,15 +250,6 @@ def test_who_looks_through_a_camera_of_the_sim_leads_by_the_state_alone(room: Ro
     look(room.teacher, FROM_BELOW, fov=1.2)
     look(room.teacher, (4.0, 4.0, 4.0))
     led_to(watcher, (4.0, 4.0, 4.0))
-
-
-def test_what_is_seen_fits_into_every_page() -> None:
-    wide = Seen((0.0, -5.0, 0.0), (0.0, 0.0, 0.0), 2.0)
-    x, y, z, *target = wide.through(0.5)
-    assert target == [0.0, 0.0, 0.0]
-    assert (x, z) == (0.0, 0.0)
-    assert y < -9.0
-    assert np.allclose(Seen((x, y, z), (0.0, 0.0, 0.0), 0.5).through(0.5), [x, y, z, *target])
 
 
 def test_a_longer_ticket_is_nonsense(local: Local, room: Room) -> None:

@@ -76,6 +76,7 @@ def test_who_has_too_many_is_told_in_words_and_tries_again_by_itself() -> None:
         assert "has 3 sims open on this server" in refused.text
         wait = refused.headers["retry-after"]
         assert f'<meta http-equiv="refresh" content="{wait}">' in refused.text
+        local.refused("full")
         assert local.http.get("/sims/camera").status_code == 200, "pages without a room are for everybody"
 
 

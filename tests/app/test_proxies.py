@@ -16,6 +16,7 @@ from websockets.exceptions import ConnectionClosed
 from app.rooms.keys import new_key, room_of
 from tests.app.page import SLUG, connect
 from tests.proxies import find
+from tests.replicas import interpolated
 from tests.server import PATIENCE, ROOT, Server, free_port, wait_for
 
 PREFIX = "/sim3"
@@ -188,5 +189,5 @@ def test_compose_balancer_is_what_haproxy_takes(tmp_path: Path) -> None:
         pytest.skip("HAProxy is not installed")
     found = re.search(r"^    content: \|\n(.*)", (ROOT / "compose.yaml").read_text(), re.S | re.M)
     assert found
-    (tmp_path / "haproxy.cfg").write_text(re.sub(r"^      ", "", found[1], flags=re.M))
+    (tmp_path / "haproxy.cfg").write_text(interpolated(re.sub(r"^      ", "", found[1], flags=re.M)))
     subprocess.run([program, "-c", "-f", f"{tmp_path}/haproxy.cfg"], check=True, capture_output=True)

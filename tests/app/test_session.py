@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Annotated, Any
 
@@ -20,9 +21,11 @@ from pydantic import ValidationError
 
 from app.rooms import drawing, motion, registry, telling
 from app.rooms.keys import new_key, room_of
+from app.rooms.looking_up import LookingUp
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
+from app.rooms.solver import Solver as Pool
 from app.rooms.solver import workers
 from app.routes.links import controls
 from app.sockets.commands import Commands
@@ -32,6 +35,7 @@ from sims.kit.params import Params
 from sims.kit.progress import Superseded, begins, goes_on
 from sims.kit.sim import Action, Sim, Step
 from tests.app.toys import IMPOSSIBLE, Solver, ToyParams, toy
+from tests.server import PATIENCE
 
 
 class Eye:
@@ -656,6 +660,24 @@ def test_what_goes_wrong_while_drawing_costs_the_step_alone(caplog: pytest.LogCa
     assert line.exc_info is None
 
 
+def test_a_state_that_cannot_be_drawn_is_told_and_the_session_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+    async def test() -> None:
+        room = Room()
+        room.eye.broken = True
+        room.session.change({"size": 5})
+        await room.drawn()
+        assert "can’t be drawn" in room.errors[-1]
+        room.eye.broken = False
+        room.session.change({"size": 6})
+        await room.drawn()
+        assert room.eye.seen[-1] == (6.0, 12.0)
+        assert len(room.errors) == 1
+
+    with caplog.at_level(logging.ERROR, "sim3"):
+        run(test)
+    assert "size=5" in caplog.text
+
+
 @pytest.mark.parametrize("what", ["drag", "action", "motion", "late motion", "change"])
 @pytest.mark.parametrize("error", [KeyError, IndexError, OverflowError, ZeroDivisionError, TypeError, RecursionError])
 def test_what_a_sim_stumbles_over_is_told_and_the_session_goes_on(
@@ -1120,6 +1142,28 @@ def test_work_ahead_is_done_once_after_the_first_drawing() -> None:
     run(test)
 
 
+def test_work_ahead_ends_with_the_server() -> None:
+    """Python would wait for it, at the end of the process too."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def piece() -> None:
+        begun.set()
+        with suppress(Superseded):
+            while True:
+                goes_on()
+                time.sleep(0.001)
+        ended.set()
+
+    async def test() -> None:
+        sessions = Sessions(10)
+        sessions.work_ahead("pieces", [piece])
+        assert await asyncio.to_thread(begun.wait, PATIENCE)
+        await sessions.close()
+        assert await asyncio.to_thread(ended.wait, PATIENCE)
+
+    run(test)
+
+
 def test_what_works_beside_the_loop_gives_way_to_it() -> None:
     """On Linux, where each thread has a niceness of its own; threads that it begins have the same."""
 
@@ -1181,3 +1225,19 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
         await sessions.close()
 
     asyncio.run(asyncio.wait_for(test(), 20))
+
+
+def test_a_pointer_that_passes_takes_the_place_of_no_click() -> None:
+    taken: list[str] = []
+
+    async def test() -> None:
+        pool = Pool()
+        looking_up = LookingUp(pool, asyncio.Lock(), lambda error: taken.append(repr(error)))
+        for kind, name in (("place", "click"), ("pointer", "there"), ("pointer", "here"), ("", "press"), ("", "press")):
+            looking_up.ask(lambda name=name: name, taken.append, kind)  # type: ignore[misc]
+        assert looking_up.task is not None
+        await looking_up.task
+        pool.close()
+
+    run(test)
+    assert taken == ["click", "here", "press", "press"]

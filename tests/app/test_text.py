@@ -49,6 +49,17 @@ def test_its_form_holds_every_control_and_the_state_of_the_link(http: httpx.Clie
     assert dict(FIELD.findall(again)).items() >= sent.items()
 
 
+@pytest.mark.parametrize(("slug", "state"), [("epipolar", "own pair"), ("triangulation", "toe-in pair")])
+def test_what_no_control_sets_goes_on_with_the_form(http: httpx.Client, slug: str, state: str) -> None:
+    sim = next(each for each in SIMS if each.slug == slug)
+    params = sim.params().changed(sim.states[state])
+    text = page(http, sim, params.query())
+    sent = {**dict(FIELD.findall(text)), **dict(re.findall(r'<input type="hidden" name="(\w+)" value="([^"]*)"', text))}
+    switches = {name: "1" if getattr(params, name) else "0" for name in sent if type(getattr(params, name)) is bool}
+    words = {name: value for name in sent if type(value := getattr(params, name)) is str}
+    assert sim.params.from_query({**sent, **switches, **words}.items()) == params
+
+
 def test_numbers_are_typed_as_beside_the_scene(http: httpx.Client) -> None:
     found = dict(FIELD.findall(http.get("/sims/euler-angles/text?yaw=45,5&pitch=π/6&roll=").text))
     assert (found["yaw"], found["pitch"], found["roll"]) == ("45.5", "30", "10")

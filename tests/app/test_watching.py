@@ -6,6 +6,7 @@ import io
 import json
 import logging
 import re
+import socket
 from typing import Any
 
 import httpx
@@ -16,6 +17,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from websockets.exceptions import InvalidStatus
 
 from app import logs
+from app.rooms import telling
 from app.settings import Settings
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
@@ -47,6 +49,7 @@ def test_metrics_count_what_happens() -> None:
         updates = ("sim3_update_seconds_count", SLUG)
         assert during[updates] > before.get(updates, 0)
         assert during["process_resident_memory_bytes", ""] > 1e7
+        assert during["sim3_failures_total", f"{SLUG} draw"] == 0  # there before the first, which is an increase
         with pytest.raises(InvalidStatus):
             connect(f"{local.url}/sims/{SLUG}/s/{'0' * 20}/wrong/channel", viser=False)
         assert measured(local)["sim3_refused_total", "address"] == 1
@@ -70,7 +73,7 @@ def test_no_label_says_who() -> None:
 
 
 def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -> None:
-    with Server(SIM3_DRAIN_SECONDS="8") as server, Page(server.url) as page:
+    with Server(SIM3_DRAIN_SECONDS="8", SIM3_LOG="json") as server, Page(server.url) as page:
         with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as http:
             assert http.get("/readyz").status_code == 200
             server.send_end()
@@ -79,8 +82,27 @@ def test_a_server_that_ends_takes_no_new_rooms_and_sends_its_pages_elsewhere() -
             assert (refused.status_code, refused.headers["retry-after"]) == (503, "2")
             assert "restarted" in refused.text
             page.works()
+            assert http.get(f"/sims/{SLUG}").status_code == 200  # lessons are read, for nobody
+        with socket.create_connection(("127.0.0.1", server.port)) as nonsense:
+            nonsense.sendall(b"this is no HTTP\r\n\r\n")
+            assert nonsense.recv(100).startswith(b"HTTP/1.1 400")
         server.send_end()  # asked for the second time, it ends at once
         assert closed(page.channel) == 1012
+        said = [
+            json.loads(line)["message"] for line in server.log().splitlines() if not line.startswith("Sim3 is ready")
+        ]
+        assert "Invalid HTTP request received." in said
+
+
+def test_before_it_ends_pages_are_told_the_state_with_which_they_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(telling, "STATE_INTERVAL", 1e9)
+    with Local() as local, Page(local.url) as page:
+        page.slide("yaw", 33)
+        page.until(lambda: "by 33.0°" in page.column.html("read"), "the slider to be obeyed")
+        assert page.params["yaw"] != 33.0
+        local.drain()
+        page.until(lambda: page.params["yaw"] == 33.0, "the state")
+        page.works()
 
 
 def test_json_lines_say_the_same_and_nothing_secret() -> None:
@@ -98,6 +120,28 @@ def test_json_lines_say_the_same_and_nothing_secret() -> None:
     assert said["level"] == "error"
     assert said["message"] == "drawing camera failed in the state fx=300"
     assert "ZeroDivisionError: by the seed" in said["traceback"]
+
+
+def test_what_goes_wrong_again_and_again_is_logged_seldom() -> None:
+    seldom = logs.Seldom()
+
+    def written(at: float, sim: str, error: str) -> str:
+        record = logging.LogRecord("sim3", logging.ERROR, __file__, 1, "%s can't go on: %s", (sim, error), None)
+        record.created = at
+        return record.getMessage() if seldom.filter(record) else ""
+
+    assert written(0.0, "camera", "first") == "camera can't go on: first"
+    assert not any(written(k, "camera", f"{k}") for k in (1.0, 2.0, 59.0))
+    assert written(3.0, "epipolar", "another") == "epipolar can't go on: another"
+    assert written(61.0, "camera", "later") == "camera can't go on: later (3 more like it before)"
+    assert written(122.0, "camera", "again") == "camera can't go on: again"
+
+
+def test_compose_passes_every_setting_on() -> None:
+    compose = yaml.safe_load((ROOT / "compose.yaml").read_text("utf-8"))
+    settings = {f"SIM3_{name.upper()}" for name in Settings.model_fields} - {"SIM3_FORWARDED_ALLOW_IPS"}
+    own = {"SIM3_HOST", "SIM3_PORT", "SIM3_DRAIN_SECONDS"}  # the image's, the host's and the balancer's
+    assert {*compose["x-settings"]} == settings - own | {"FORWARDED_ALLOW_IPS"}
 
 
 def manifests() -> list[dict[str, Any]]:

@@ -51,6 +51,10 @@ VISERS_OWN_WORDS = (
     "GPU stall due to ReadPixels",
 )
 
+FOLDED = (
+    "ancestor::details[not(@open)]/summary | ancestor::*[@id='more'][@hidden]/preceding-sibling::button[@aria-controls]"
+)
+"""What unfolds that in which something is."""
 # Of each formula in the read-outs: what stands before the equals sign, and the numbers after it.
 FORMULAS = """() => [...document.querySelectorAll(".s3-column math")].map(formula => [
     formula.textContent.split("=")[0], ...[...formula.querySelectorAll("mn")].map(n => n.textContent)])"""
@@ -344,7 +348,7 @@ class Learner:
 
     def unfold(self, inside: Locator) -> None:
         """Open the fold that something is in."""
-        fold = inside.locator("xpath=ancestor::details[not(@open)]/summary")
+        fold = inside.locator(f"xpath={FOLDED}")
         if fold.count():
             fold.click()
 

@@ -70,7 +70,7 @@ def walk(frame: Frame, page: Page) -> list[dict[str, Any]]:
 
 def unfold(frame: Frame) -> None:
     """Open every fold by keyboard."""
-    for head in frame.locator("summary:visible").all():
+    for head in frame.locator("summary:visible, [data-s3=more]").all():
         head.press("Enter")
 
 

@@ -28,13 +28,13 @@ def entered(classroom: Classroom, path: str) -> Learner:
 
 
 def opened(learner: Learner, path: str) -> Learner:
+    learner.leave()  # what this page's sim still says isn't taken for the lesson's
     learner.page.goto(f"{learner.url}/sims/{path}")
     return at_lesson(learner)
 
 
 def at_lesson(learner: Learner) -> Learner:
     """Wait until the lesson before the learner is live."""
-    learner.sockets.forget()
     learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
     learner.until(lambda: bool(learner.sockets.states))
     expect(learner.page.get_by_role("button", name="Print a handout")).to_be_visible()
@@ -58,6 +58,9 @@ def number(learner: Learner, name: str) -> Locator:
 def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: Learner) -> None:
     page = reader.page
     show, mine = page.get_by_role("button", name="Show this"), page.get_by_role("button", name="Back to mine")
+    box = page.locator("iframe").first.bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] <= DESK["height"], "the sim's lower end isn't in sight as the page opens"
     read(reader, "the-last-degree")
     state(reader, pitch=89, yaw=0)
     expect(show).to_be_hidden()
@@ -180,6 +183,7 @@ def test_a_link_to_a_step_the_ways_of_the_browser_and_another_tab(classroom: Cla
     tab.page.close()
 
     page.goto(f"{reader.url}/concepts")
+    reader.sockets.forget()
     page.go_back()
     at_lesson(reader)
     expect(page.locator(".current")).to_have_id("the-other-end")

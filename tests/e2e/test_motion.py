@@ -61,3 +61,28 @@ def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
     learner.until(lambda: learner.params["progress"] == 0)
     learner.until(lambda: learner.params["progress"] == 3)
     assert set(progress(learner, since)) == {0, 1, 2, 3}
+
+
+RESOLUTIONS = """(times) => {
+    const root = { viewport: { dpr: 1 }, size: [] };
+    root.setDpr = (dpr) => { root.viewport = { dpr }; };
+    const store = { getState: () => ({ ...root, invalidate() {} }), subscribe(heard) { store.heard = heard; } };
+    window.__viserMutable = { scene: { __r3f: { root: store } } };
+    sim3.liveAt = 1 - 2000;
+    const ask = window.requestAnimationFrame;
+    const found = times.map((took) => {
+        let now = 0;
+        window.requestAnimationFrame = (draw) => draw(now += took);
+        for (let k = 0; k < 16; k++) window.__viserMutable.requestRender();
+        return root.viewport.dpr;
+    });
+    window.requestAnimationFrame = ask;
+    root.setDpr(2); // as when the page is laid out anew
+    store.heard(root);
+    return [...found, root.viewport.dpr];
+}"""
+
+
+def test_the_scene_is_coarser_only_where_its_frames_take_long(classroom: Classroom) -> None:
+    learner = classroom.open_column("quaternion/embed")
+    assert learner.frame.evaluate(RESOLUTIONS, [17, 50, 30, 17, 30, 90]) == [1, 0.75, 0.75, 1, 1, 0.75, 0.75]

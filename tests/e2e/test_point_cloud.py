@@ -58,6 +58,12 @@ def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
     points = learner.scene.points("/cloud/points")
     aim = points[np.argmin(np.linalg.norm(points - [0.6, -1.6, 0.0], axis=1))]
     x, y = Picture(learner).place(aim)
+    learner.page.mouse.move(x + 1, y)
+    learner.until(lambda: learner.scene.visible("/under/own"))
+    cell = learner.scene.points("/under/own").reshape(-1, 3)
+    assert (np.abs(cell.mean(axis=0) - aim) < 0.35).all(), "it isn't the cell under the pointer"
+    learner.page.mouse.move(2, y)
+    learner.until(lambda: not learner.scene.visible("/under/own"))
     learner.page.mouse.click(x, y)
     learner.until(lambda: learner.params["selected"] is not None)
     chosen = learner.solved()["selected"]

@@ -7,9 +7,12 @@ import re
 import numpy as np
 from playwright.sync_api import expect
 
+from sims.kit.scene.view import FIELD
+from tests.app.page import Page
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 from tests.frames import differences
+from tests.server import camera_message
 
 # Panel widths and the names of sessions and connections aside, viewers of a room receive the same.
 PRIVATE = """async (viewer) => {
@@ -26,6 +29,30 @@ PRIVATE = """async (viewer) => {
   while (answers.filter((answer) => answer.type === "state").length < 2) await new Promise((done) => setTimeout(done, 20));
   socket.close();
   return answers.filter((answer) => answer.type === "state");
+}"""
+
+# The views of one who is led to another at 50 ms a frame, until the view is let go with the frame of a number.
+LED = """async ([told, letGo]) => {
+  const { Lead } = await import(sim3.main.replace("main.js", "lead.js"));
+  const { matches } = matchMedia("(prefers-reduced-motion: reduce)");
+  let now = 1000, next = null;
+  const [clock, ask] = [performance.now, requestAnimationFrame];
+  performance.now = () => now;
+  window.requestAnimationFrame = (step) => ((next = step), 1);
+  sim3.liveAt = 1;
+  const view = { led: true, camera: [0, -4, 0, 0, 0, 0] };
+  const lead = new Lead(view);
+  const seen = [];
+  lead.hear(told);
+  for (let frame = 0; next && frame < 50; frame++) {
+    const step = next;
+    [next, view.led] = [null, frame < letGo];
+    now += 50;
+    step();
+    if (view.led) seen.push(lead.at);
+  }
+  [performance.now, window.requestAnimationFrame] = [clock, ask];
+  return { seen: seen.length ? seen : [lead.at], gliding: lead.gliding, reduced: matches };
 }"""
 
 
@@ -155,3 +182,55 @@ def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(cla
     bar.get_by_role("button", name="Back to the live room").click()
     expect(bar.get_by_role("status")).to_contain_text("You are watching")
     assert watcher.address.startswith(watch_link)
+
+
+def test_a_view_that_is_led_glides_round_what_it_looks_at(classroom: Classroom) -> None:
+    watcher = classroom.open_column("euler-angles/embed")
+    shape = watcher.frame.evaluate(
+        "document.querySelector('.s3-scene').clientWidth / document.querySelector('.s3-scene').clientHeight"
+    )
+    told = {"view": [4, 0, 0, 0, 0, 0], "aspect": shape}
+    seen = np.array(watcher.frame.evaluate(LED, [told, 99])["seen"])
+    assert len(seen) > 3
+    assert np.allclose(seen[-1], told["view"])
+    assert np.allclose(np.linalg.norm(seen[:, :3], axis=1), 4.0), "no nearer on the way"
+    assert (np.diff(seen[:, 0]) > 0).all(), "never back"
+    let_go = watcher.frame.evaluate(LED, [told, 2])
+    assert (len(let_go["seen"]), let_go["gliding"]) == (2, False), "a hand has it at once"
+
+    wide = watcher.frame.evaluate(LED, [{"view": [0, -6, 0, 0, 0, 0], "aspect": shape / 3}, 99])["seen"][-1]
+    half = np.arctan(np.tan(FIELD / 2) * np.minimum(1, [shape, shape / 3]))
+    assert np.allclose(wide, [0, -6 * np.sin(half[1]) / np.sin(half[0]), 0, 0, 0, 0]), "what fits there fits here"
+
+    calm = classroom.open_column("euler-angles/embed", reduced_motion="reduce")
+    at_once = calm.frame.evaluate(LED, [told, 99])
+    assert at_once["reduced"]
+    assert at_once["seen"] == [told["view"]]
+
+
+def test_a_watcher_looks_from_where_the_teacher_does_until_their_own_hand_turns_the_view(classroom: Classroom) -> None:
+    with Page(classroom.server.url) as teacher:
+
+        def look(x: float, y: float, z: float) -> None:
+            size = box(watcher.frame.locator("canvas[data-engine]"))
+            shape = {"image_width": int(size["width"]), "image_height": int(size["height"])}
+            teacher.send({**camera_message(), **shape, "position": (x, y, z), "fov": FIELD})
+
+        def looks(x: float, y: float, z: float) -> bool:
+            return bool(np.allclose(watcher.sockets.camera["position"], (x, y, z), atol=0.02))
+
+        watcher = classroom.open(teacher.address.replace(f"{teacher.key}/", ""))
+        bar = watcher.frame.get_by_role("region", name="Live room")
+        for place in ((1.0, -2.0, 6.0), (5.0, 1.0, 2.0)):
+            look(*place)
+            watcher.until(lambda at=place: looks(*at))  # type: ignore[misc]
+        expect(bar.get_by_role("status")).to_have_text("You are watching, and your view follows.")
+
+        at = box(watcher.frame.locator("canvas[data-engine]"))
+        watcher.pull((at["x"] + 40, at["y"] + 200), 60, 10)
+        expect(bar.get_by_role("status")).to_have_text("You are watching, from your own view.")
+        look(1.0, -2.0, 6.0)
+        watcher.page.wait_for_timeout(400)
+        assert not looks(1.0, -2.0, 6.0)
+        bar.get_by_role("button", name="Follow the view").click()
+        watcher.until(lambda: looks(1.0, -2.0, 6.0))

@@ -19,6 +19,7 @@ from geometry.rotations import (
     nearest_rotation,
     orbit,
     rotation_angle,
+    shortest_turn,
     skew,
     unit,
 )
@@ -218,3 +219,14 @@ def test_orbit_refuses_a_zero_axis_and_what_is_not_finite() -> None:
     ):
         with pytest.raises(GeometryError, match=wrong):
             orbit(axis, point, turns)
+
+
+@given(units(), units())
+def test_the_shortest_turn_brings_one_direction_to_another(start: Array, end: Array) -> None:
+    R = shortest_turn(3.0 * start, 0.5 * end)
+    sine = float(np.linalg.norm(np.cross(start, end)))
+    if sine > 1e-6 or start @ end > 0.0:
+        np.testing.assert_allclose(R @ start, end, rtol=0, atol=1e-9)
+        angle = math.atan2(sine, float(start @ end))
+        assert Rotation.from_matrix(R).magnitude() == pytest.approx(angle, abs=1e-7)
+    np.testing.assert_allclose(shortest_turn(start, -start), np.eye(3))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sims.kit.scene.dragging import STRIDE, on_circle
+from sims.kit.scene.dragging import STRIDE, on_circle, on_sphere
 
 EYES = [(0.0, 0.0, 5.0), (0.0, -5.0, 0.5), (3.0, -4.0, 0.0), (1.0, 2.0, -6.0)]
 each_eye = pytest.mark.parametrize("eye", EYES)
@@ -39,3 +39,17 @@ def test_it_never_jumps_to_the_other_side(eye: tuple[float, float, float]) -> No
         x, y, _ = on_circle(at(start), (0.0, 0.0, 1.0), eye, at(start + 180.0))
         gone = math.remainder(math.atan2(y, x) - math.radians(start), 2.0 * math.pi)
         assert abs(gone) <= STRIDE + 1e-9
+
+
+@each_eye
+def test_a_spot_of_a_sphere_goes_to_where_the_pointer_sees_it(eye: tuple[float, float, float]) -> None:
+    """On the side where it is; past the rim it stays on it."""
+    for spot in np.random.default_rng(4).normal(size=(20, 3)):
+        spot *= 0.8 / math.sqrt(spot @ spot)
+        near = bool(spot @ eye >= spot @ spot)
+        for far in (0.5, 1.0, 1.7):
+            np.testing.assert_allclose(
+                on_sphere(0.8, eye, eye + far * (spot - eye), near=near), spot, rtol=0, atol=1e-9
+            )
+    rim = on_sphere(0.8, eye, 3.0 * np.cross(eye, (1.0, 2.0, 3.0)), near=True)
+    assert math.sqrt(rim @ rim) == pytest.approx(0.8)

@@ -12,11 +12,12 @@ import numpy.typing as npt
 import pytest
 
 from sims.epipolar import SIM, EpipolarParams, solve
-from sims.epipolar.calibration import EXAMPLE, changes, read, says
+from sims.epipolar.calibration import EXAMPLE, changes, says
 from sims.epipolar.own import OwnPair
 from sims.kit import readout
 from sims.kit.readout import figure
 from sims.kit.refusals import BadParams
+from sims.kit.stereo_text import read
 from sims.triangulation.calibration import EXAMPLE as MIDDLEBURY
 from tests.sims.markup import words, xml
 

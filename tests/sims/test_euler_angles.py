@@ -25,6 +25,7 @@ from tests.sims.markup import words
 
 Array = npt.NDArray[np.float64]
 START = EulerParams()
+PARTS = ("/turn1/turn2/turn3/hull", "/turn1/turn2/turn3/mark")
 CONVENTIONS = list(product(ORDERS, FRAMES))
 each_convention = pytest.mark.parametrize(("order", "frame"), CONVENTIONS)
 conventions = st.sampled_from(CONVENTIONS)
@@ -175,13 +176,13 @@ def test_the_roll_arc_is_outside_the_wing_and_clear_of_the_other_arcs(rig: Rig) 
 def test_grips_are_where_arcs_nose_and_wing_end(rig: Rig, order: str, frame: str) -> None:
     p = state(order, frame)
     rig.show(p)
-    assert set(rig.model.draggable()) == {*ARCS, *BODY}
+    assert set(rig.model.draggable()) == {*ARCS, *BODY, *PARTS}
     for k, (grip, before) in enumerate(zip(ARCS, ("", "/turn1", "/turn1/turn2"), strict=True)):
         end = rig.model.points(f"{before}/arc{k}/end")[0, 1]
         np.testing.assert_allclose(rig.model.world_pose(grip)[:3, 3], end, rtol=0, atol=1e-5)
-    for grip, column in BODY.items():
+    for grip, spot in BODY.items():
         place = rig.model.world_pose(grip)[:3, 3]
-        np.testing.assert_allclose(place / np.linalg.norm(place), scipys(p)[:, column], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(place / np.linalg.norm(place), scipys(p) @ spot, rtol=0, atol=1e-9)
     rig.show(p.changed({"progress": 1.5}))
     assert not any(rig.model.visible(grip) for grip in (*ARCS, *BODY)), "a turn half made is held by its slider"
 
@@ -218,17 +219,39 @@ def test_nose_and_wing_go_where_they_are_pulled(
     length = math.hypot(*place)
     if length < 0.01:
         return
-    for grip, column in BODY.items():
+    for grip, spot in BODY.items():
         before = scipys(p)
-        if before[:, column] @ place < -0.999 * length:
+        if (before @ spot) @ place < -0.999 * length:
             continue  # opposite: no turn is the shortest
         found = p.changed(SIM.handles[grip](p, place))
         after = scipys(found)
-        np.testing.assert_allclose(after[:, column], np.array(place) / length, rtol=0, atol=1e-4)
+        np.testing.assert_allclose(after @ spot, np.array(place) / length, rtol=0, atol=1e-4)
         turned = Rotation.from_matrix(after @ before.T).magnitude()
-        angle = math.acos(min(max(float(before[:, column] @ place) / length, -1.0), 1.0))
+        angle = math.acos(min(max(float((before @ spot) @ place) / length, -1.0), 1.0))
         assert turned == pytest.approx(angle, abs=1e-3), "it isn't the shortest turn"
     assert SIM.handles["/held_nose"](p, (0.0, 0.0, 0.0)) == {}
+
+
+@pytest.mark.parametrize(("part", "progress"), [(PARTS[0], 3.0), (PARTS[1], 3.0), (PARTS[0], 1.4)])
+def test_the_aircraft_turns_wherever_it_is_taken(rig: Rig, part: str, progress: float) -> None:
+    """The place that was taken stays under the pointer; one near the middle turns it as a ball does."""
+    p = state(yaw=40.0, pitch=20.0, roll=-30.0, progress=progress)
+    rig.show(p)
+    eye = np.asarray(rig.browser.client.camera.position)
+    places = rig.model.points(part)
+    outside = places[np.linalg.norm(places, axis=1) > 0.6]
+    taken = outside[np.argmax(outside @ eye)]
+    aims = [Rotation.from_rotvec((0.05 * k, 0.1 * k, -0.08 * k)).apply(taken) for k in (1, 2, 3)]
+    own = rig.model.world_pose(part)[:3, :3].T @ taken
+    rig.browser.drag(part, *(tuple((eye + 0.8 * (aim - eye)).tolist()) for aim in aims), taken=tuple(taken.tolist()))
+    rig.settle()
+    np.testing.assert_allclose(rig.model.world_pose(part)[:3, :3] @ own, aims[-1], rtol=0, atol=1e-6)
+    before = rig.model.world_pose(part)[:3, :3]
+    taken = (0.05, -0.05, 0.1)
+    rig.browser.drag(part, (0.05, -0.05, 0.12), taken=taken)
+    rig.settle()
+    turned = Rotation.from_matrix(before.T @ rig.model.world_pose(part)[:3, :3]).magnitude()
+    assert 0.01 < turned < 0.2, "a small pull near the middle turns it a little"
 
 
 # ---- the product builds up

@@ -199,7 +199,8 @@ def test_rings_differ_by_colour_dashes_and_letter(rig: Rig) -> None:
 def test_each_ring_is_held_on_itself_half_way_between_its_pivots(rig: Rig, changes: dict[str, Any]) -> None:
     rig.show(state(**changes))
     assert set(rig.model.draggable()) == {
-        each for ring in rings.RINGS for each in (ring.grip, f"{RINGS[ring.name]}/ring")
+        *(each for ring in rings.RINGS for each in (ring.grip, f"{RINGS[ring.name]}/ring")),
+        *(f"{RINGS['inner']}/{part}" for part in ("hull", "mark")),
     }
     for ring in rings.RINGS:
         place = rig.model.world_pose(ring.grip)[:3, 3]
@@ -257,6 +258,36 @@ def test_a_ring_turns_by_its_body_wherever_it_is_taken(rig: Rig, ring: rings.Rin
         rig.settle()
         turned = math.remainder(getattr(rig.session.params, ring.angle) - getattr(p, ring.angle), 360.0)
         assert turned == pytest.approx(80.0, abs=0.05)
+
+
+spots = st.tuples(st.floats(0.2, 0.7), st.floats(-0.6, 0.6), st.floats(-0.2, 0.2))
+small = st.tuples(*[st.floats(-0.1, 0.1)] * 3)
+
+
+@given(p=any_state, spot=spots, turn=small)
+def test_the_aircraft_goes_where_it_is_pulled_as_far_as_the_rings_let_it(
+    p: GimbalParams, spot: tuple[float, float, float], turn: tuple[float, float, float]
+) -> None:
+    """Far from lock all the way; and never farther from there than it was."""
+    place = Rotation.from_rotvec(turn).apply(solve(p).R @ spot)
+    found = p.changed(SIM.handles["/aircraft"](p, (*spot, *place.tolist())))
+    away, before = (float(np.linalg.norm(solve(each).R @ spot - place)) for each in (found, p))
+    assert away <= before + 1e-9
+    if solve(p).singular_values[2] > 0.5:
+        assert away < 0.05 * before + 1e-6
+
+
+@pytest.mark.parametrize("pitch", [90.0, -90.0])
+def test_at_lock_a_pull_about_the_lost_axis_turns_nothing(pitch: float) -> None:
+    p = state(yaw=25.0, pitch=pitch, roll=-40.0)
+    lost = solve(p).lost_axis
+    assert lost is not None
+    spot = (0.7, 0.0, 0.0)
+    place = axis_angle_to_matrix(lost, 0.4) @ solve(p).R @ spot
+    stays = SIM.handles["/aircraft"](p, (*spot, *place.tolist()))
+    assert [stays[name] for name in ("yaw", "pitch", "roll")] == pytest.approx([25.0, pitch, -40.0], abs=1e-6)
+    across = axis_angle_to_matrix(solve(p).axes[:, 1], 0.4) @ solve(p).R @ spot
+    assert SIM.handles["/aircraft"](p, (*spot, *across.tolist()))["pitch"] != pytest.approx(pitch, abs=5.0)
 
 
 # ---- three lamps

@@ -549,6 +549,37 @@ def test_the_cell_of_a_selected_point_is_drawn_with_what_was_merged(rig: Rig, na
     assert not rig.model.visible("/cells/own")
 
 
+def test_cells_are_drawn_under_a_pointer_that_passes_and_are_no_state(rig: Rig) -> None:
+    show(rig, voxel_size=0.2)
+    version, answers = rig.session.version, len(rig.browser.told)
+    aim = rig.model.points("/cloud/points")[700]
+    eye = np.array([6.0, -6.0, 5.0])
+
+    def passes(ray: tuple[float, ...] | None) -> None:
+        rig.host.call(lambda: rig.browser.commands.pass_over(ray))
+        rig.settle()
+
+    passes((*eye.tolist(), *(aim - eye).tolist()))
+    cell = rig.model.points("/under/own").reshape(-1, 3)
+    np.testing.assert_allclose(cell.max(axis=0) - cell.min(axis=0), 0.2, atol=1e-5)
+    seen = rig.model.points("/cloud/points")
+    inside = ((seen > cell.min(axis=0) - 1e-5) & (seen < cell.max(axis=0) + 1e-5)).all(axis=1)
+    assert inside.sum() == 1
+    sight = (aim - eye) / np.linalg.norm(aim - eye)
+    assert np.linalg.norm(np.cross(sight, seen[inside][0] - eye)) < 0.01 * np.linalg.norm(aim - eye) + 1e-6
+    assert rig.session.version == version
+    assert rig.browser.told[answers:] == [{"type": "over"}]
+    passes(None)
+    assert not rig.model.visible("/under/own")
+    passes((*eye.tolist(), *(aim - eye).tolist()))
+    show(rig, voxel_size=0.21)
+    assert not rig.model.visible("/under/own"), "another state has other cells"
+    show(rig, voxel_size=0.2, process="ground")
+    passes((*eye.tolist(), *(aim - eye).tolist()))
+    assert not rig.model.visible("/under/own")
+    assert not rig.browser.refused
+
+
 def test_dots_grow_with_the_cells_and_the_original_is_a_ghost(rig: Rig) -> None:
     show(rig)
     sizes = [rig.model.node("/cloud/points").props["point_size"]]

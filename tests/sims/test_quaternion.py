@@ -556,6 +556,35 @@ def test_the_tip_is_dragged_to_a_direction(rig: Rig) -> None:
     assert rig.session.params.axis == (0.8, -0.6, 0.0), "no direction there: the last one stays"
 
 
+@pytest.mark.parametrize("angle", [0.0, 100.0, 359.0, 410.0, 660.0])
+def test_the_object_is_turned_wherever_it_is_taken(rig: Rig, angle: float) -> None:
+    """It has come there by one turn from its start, whose q goes on from where it was."""
+    p = QuaternionParams().changed({"axis": (1, 2, 3), "angle": angle, "start": (0.8, 0.6, 0, 0)})
+    rig.show(p)
+    places = rig.model.points("/object/hull")
+    taken = places[np.linalg.norm(places, axis=1) > 0.7][3]
+    eye = np.asarray(rig.browser.client.camera.position)
+    own = rig.model.world_pose("/object")[:3, :3].T @ taken
+    aim = Rotation.from_rotvec((0.1, -0.2, 0.15)).apply(taken)
+    rig.browser.drag("/object/hull", tuple((eye + 1.2 * (aim - eye)).tolist()), taken=tuple(taken.tolist()))
+    rig.settle()
+    np.testing.assert_allclose(rig.model.world_pose("/object")[:3, :3] @ own, aim, rtol=0, atol=5e-3)
+    assert np.array(rig.session.solution.q) @ solve(p).q > 0.95
+
+
+@pytest.mark.parametrize("angle", [0.0, 90.0, 355.0, 400.0, 720.0])
+def test_the_arc_of_the_angle_is_led_round(rig: Rig, angle: float) -> None:
+    p = QuaternionParams().changed({"axis": (1, -1, 2), "angle": angle})
+    rig.show(p)
+    ends = [solve(p.changed({"angle": min(angle + more, 720.0)})) for more in (8.0, 16.0)]
+    grip = rig.model.world_pose("/angle")[:3, 3]
+    np.testing.assert_allclose(grip, rig.model.points("/axis/turn/end")[0, 1], rtol=0, atol=1e-5)
+    turned = [Rotation.from_rotvec(math.radians(more) * ends[0].n).apply(grip) for more in (8.0, 16.0)]
+    rig.browser.drag("/angle", *(tuple(place.tolist()) for place in turned))
+    rig.settle()
+    assert rig.column.values["angle"] == pytest.approx(min(angle + 16.0, 720.0))
+
+
 def test_p_is_dragged_and_its_image_follows(rig: Rig) -> None:
     start = START.changed({"show": "point"})
     rig.show(start)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from pydantic import ValidationError
 
@@ -19,8 +21,9 @@ from sims.kit.column import Column
 from sims.kit.controls import key
 from sims.kit.fields import Choice, Letters, Numbers, Opened, OptionalNumber, Slider, Switch, Text, Vector
 from sims.kit.params import Params
+from sims.kit.scene.view import FIELD
 from sims.kit.sim import Sim, jsonable
-from tests.frames import differences
+from tests.frames import SceneModel, differences
 from tests.per_sim import per_sim
 from tests.server import Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
@@ -28,6 +31,7 @@ from tests.sims.contract import contract_of
 from tests.sims.markup import bad_attributes, bad_numbers, mistakes, without_code, words, xml
 
 AnySim = Sim[Any, Any]
+Array = npt.NDArray[np.float64]
 MOST_LABELS = 7
 MODELS: dict[str, type[Params]] = {sim.slug: sim.params for sim in SIMS}
 NUMERIC = {slug: model.numeric for slug, model in MODELS.items()}
@@ -187,6 +191,45 @@ def test_every_state_draws(rigs: dict[str, Rig], sim: AnySim, name: str, params:
         assert np.isfinite(model.world_pose(node)).all(), node
         if {"points", "vertices"} & model.node(node).props.keys():
             assert np.isfinite(model.points(node)).all(), node
+
+
+LETTER, EDGE, LINE = 7.3, 7.0, 19.0
+"""Pixels of a label: about so wide a letter, and so much round it; its height."""
+
+
+@each_sim
+@pytest.mark.parametrize("size", [(385, 600), (850, 800)], ids=["beside", "large"])
+def test_labels_are_in_sight_and_touch_none_as_a_sim_opens(
+    rigs: dict[str, Rig], sim: AnySim, size: tuple[int, int]
+) -> None:
+    """The scene of a page of 700×600 pixels, and of one of 1280×800."""
+    rig = rigs[sim.slug]
+    rig.show(parse(sim, ""))
+    view = sim.home(rig.session.params, rig.session.solution)
+    middle, away = np.array(view.look_at), np.subtract(view.position, view.look_at)
+    half = math.tan(0.5 * FIELD) * min(1.0, size[0] / size[1])
+    eye = middle + away * (view.radius / math.sin(math.atan(half)) / np.linalg.norm(away))
+    boxes = {name: box(rig.model, name, text, eye, middle, size) for name, text in rig.model.labels().items() if text}
+    for name, (left, top, right, bottom) in boxes.items():
+        assert min(left, top, size[0] - right, size[1] - bottom) >= 0, f"{name} is cut off"
+        for other, (x, y, u, v) in boxes.items():
+            apart = other >= name or min(right, u) - max(left, x) < 5 or min(bottom, v) - max(top, y) < 5
+            assert apart, f"{name} and {other} touch"
+
+
+def box(model: SceneModel, name: str, text: str, eye: Array, middle: Array, size: tuple[int, int]) -> list[float]:
+    """Left, top, right and bottom of a label on the screen, in pixels."""
+    forward = (middle - eye) / np.linalg.norm(middle - eye)
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    place = model.world_pose(name)[:3, 3] - eye
+    scale = 0.5 * size[1] / math.tan(0.5 * FIELD) / (place @ forward)
+    u, v = 0.5 * size[0] + scale * (place @ right), 0.5 * size[1] + scale * (place @ np.cross(forward, right))
+    wide, high = LETTER * len(text) + EDGE, LINE
+    upright, _, level = model.node(name).props["anchor"].partition("-")
+    x = u - wide * {"left": 0.0, "center": 0.5, "right": 1.0}[level]
+    y = v - high * {"top": 0.0, "center": 0.5, "bottom": 1.0}[upright]
+    return [float(each) for each in (x, y, x + wide, y + high)]
 
 
 @few_states
@@ -503,7 +546,7 @@ def test_what_can_be_dragged_is_known_and_moves(sim: AnySim) -> None:
     with Rig(sim) as rig:
         for name in rig.model.draggable():
             before = rig.session.params
-            body = name not in sim.handles  # turned wherever it is taken, as its grip is
+            body = name not in sim.handles  # moved wherever it is taken
             x, y, z = (0.5, 0.4, 0.6) if body else rig.model.world_pose(name)[:3, 3].tolist()
             rig.browser.drag(name, (x + 0.05, y + 0.02, z + 0.03), taken=(x, y, z))
             rig.settle()

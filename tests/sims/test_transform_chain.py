@@ -21,7 +21,7 @@ from sims.kit.refusals import BadParams
 from sims.kit.spelling import shown_number
 from sims.kit.viewer import VERSION
 from sims.transform_chain import SIM, ChainParams, ChainSolution, actions, solve
-from sims.transform_chain.labels import HEIGHT, PLANE, WIDTH, said
+from sims.transform_chain.labels import EDGE, HEIGHT, PLANE, WIDTH, said
 from sims.transform_chain.presets import PRESETS, Preset, known
 from sims.transform_chain.views import view_of
 from tests.frames import decode_frame
@@ -410,7 +410,7 @@ def test_words_stand_where_they_say_over_nothing_and_hang_on_nothing_that_moves(
     for k, one in enumerate(kept):
         for other in kept[:k]:
             x, y = np.abs(np.array(PLANE) @ np.subtract(one.place, other.place))
-            wide = 0.5 * WIDTH * radius * (len(one.text) + len(other.text))
+            wide = 0.5 * (2 * EDGE + WIDTH * (len(one.text) + len(other.text))) * radius
             assert x >= wide - 1e-9 or y >= HEIGHT * radius - 1e-9, (one, other)
 
 
@@ -420,7 +420,7 @@ def test_words_give_way_to_more_important_ones_alone() -> None:
     names = [word.name for word in said(heap, solve(heap))]
     assert "x" in names
     assert "T4" in names
-    assert "p" not in names, "it would stand over a letter of the end effector"
+    assert "T1" not in names, "it would stand over a letter of the world's axes"
     stretched = START.changed(SIM.states["planar 2R stretched, singular"])
     assert said(stretched, solve(stretched))[0].text == "⚠ singular pose"
     alone = EIGHT.changed({"stage": 5, "swap": None})
@@ -577,6 +577,23 @@ def test_a_joint_is_led_round_and_round_without_a_jump(rig: Rig) -> None:
         np.testing.assert_allclose(rig.model.world_pose("/turn2")[:3, 3], place, rtol=0, atol=1e-9)
         before = p.angles[1]
     assert (p.angles[0], p.angles[2], p.trace) == (30, -30, 2)
+
+
+@pytest.mark.parametrize("k", [0, 1, 2])
+def test_a_link_turns_wherever_it_is_taken(rig: Rig, k: int) -> None:
+    """About its joint, by as much as the place that was taken goes round."""
+    rig.show(START)
+    body = "".join(f"/link{n}" for n in range(1, k + 2)) + "/body"
+    joint, normal = solve(START).lines[k] or ((), ())
+    eye = np.asarray(rig.browser.client.camera.position)
+    places = rig.model.points(body)
+    taken = places[np.argmax(np.linalg.norm(places - joint, axis=1))]
+    ways = [Rotation.from_rotvec(math.radians(a) * np.array(normal)).apply(taken - joint) + joint for a in (20, 40)]
+    seen = [tuple((eye + 0.9 * (way - eye)).tolist()) for way in ways]
+    rig.browser.drag(body, *seen, taken=tuple(taken.tolist()))
+    rig.settle()
+    turned = [math.remainder(a - b, 360.0) for a, b in zip(state(rig).angles, START.angles, strict=True)]
+    assert turned == pytest.approx([40.0 * (j == k) for j in range(3)], abs=0.05)
 
 
 def test_a_sliding_joint_is_pulled_along_its_axis(rig: Rig) -> None:

@@ -52,7 +52,7 @@ STYLES = (ROOT / "static" / "viser.css").read_text()
 NAMES = sorted(
     {*re.findall(r"mantine-([A-Z]\w+)-\w+", DOM + STYLES), *re.findall(r"data-dock-\w+", DOM + STYLES)}
     | {*re.findall(r"^    (\w+): [`\w]", DOM, re.MULTILINE), *re.findall(r"mutable(?:, \"|\.)(\w+)", DOM)}
-    | {"__viserMutable", "nodePoseData", "ViewerCameraMessage", "look_at", "CAMERA"} - {"CAMERA"}
+    | {"__viserMutable", "canvas", "setDpr", "nodePoseData", "ViewerCameraMessage", "look_at", "CAMERA"} - {"CAMERA"}
 )
 """Names of the client's components, icons and regions, and of what it reads from the address."""
 

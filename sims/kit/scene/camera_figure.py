@@ -22,19 +22,19 @@ class CameraFigure:
         self.node = stage.group(name)
         parts = bodies.camera(BANDS.get(role, 0))
         grey = (70, 78, 88) if stage.palette.dark else (88, 96, 106)
-        self._solids = [
+        self.solids = [
             stage.mesh(f"{name}/body", parts["body"], role),
             stage.mesh(f"{name}/lens", parts["lens"], grey),
         ]
         if "mark" in parts:
-            self._solids.append(stage.mesh(f"{name}/mark", parts["mark"], "page"))
+            self.solids.append(stage.mesh(f"{name}/mark", parts["mark"], "page"))
         self.edges = stage.lines(f"{name}/frustum", role, width=1.5)
         self.picture = stage.sheet(f"{name}/picture", role, opacity=0.12)
         self._letter = stage.label(f"{name}/letter", letter)
 
     def show(self, visible: bool) -> None:
         """Show or hide the body with its letter; who looks through a camera doesn't see it."""
-        for node in (*self._solids, self._letter):
+        for node in (*self.solids, self._letter):
             node.show(visible)
 
     def draw(
@@ -44,7 +44,7 @@ class CameraFigure:
 
         The frustum begins in the centre, or, for a camera whose lines of sight are parallel, in corners at its `back`.
         """
-        for solid in self._solids:
+        for solid in self.solids:
             solid.scale(size)
         self._letter.pose(position=(0.0, -0.22 * size, -0.12 * size))
         if self.node.differs("corners", corners, back):

@@ -20,7 +20,7 @@ from sims.kit.scene import bodies, dragging, view
 from sims.kit.scene.lights import light
 from sims.kit.scene.nodes import HEAD_LENGTH, HEAD_RADIUS, Arrows, Cloud, Grip, Label, Lines, Node, Solid, Strokes
 from sims.kit.scene.pieces import Dash, dashes
-from sims.kit.types import Place, Vector
+from sims.kit.types import Line, Place, Vector
 
 NO_LINE = np.zeros((2, 3))
 NO_ARROW = np.zeros((1, 2, 3))
@@ -32,7 +32,7 @@ class Stage:
     """Makes nodes for one viewer."""
 
     def __init__(
-        self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, Place], None],
+        self, client: viser.ClientHandle, palette: Palette, drag: Callable[[str, tuple[float, ...]], None],
         pick: Callable[[str], None] = lambda name: None,
         click: Callable[[str, tuple[float, ...]], None] = lambda name, ray: None,
         home: Callable[[Vector, Vector, float], None] = lambda position, look_at, radius: None,
@@ -191,12 +191,16 @@ class Stage:
         )  # fmt: skip
         return Cloud(handle)
 
-    def aircraft(self, name: str, *, scale: float = 1.0, ghost: tuple[float, float] | None = None) -> None:
+    def aircraft(
+        self, name: str, *, scale: float = 1.0, ghost: tuple[float, float] | None = None
+    ) -> tuple[Solid, Solid]:
         """The aircraft with its marked wing, under a node; a `ghost` has opacities of its hull and its mark."""
         parts = bodies.aircraft(scale)
         hull, mark = ghost or (None, None)
-        self.mesh(f"{name}/hull", parts["hull"], self.palette.solid if ghost is None else "ghost", opacity=hull)
-        self.mesh(f"{name}/mark", parts["mark"], "held", opacity=mark)
+        return (
+            self.mesh(f"{name}/hull", parts["hull"], self.palette.solid if ghost is None else "ghost", opacity=hull),
+            self.mesh(f"{name}/mark", parts["mark"], "held", opacity=mark),
+        )
 
     def grip(
         self, name: str, radius: float, role: str = "held", *, halo: float = 1.7,
@@ -218,10 +222,23 @@ class Stage:
         dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return Grip(ball.handle, rings)
 
-    def turned_by(self, body: Node, name: str, grip: Grip, axis: Callable[[], Vector]) -> None:
-        """Have a body that the grip of that name turns turn by itself too, wherever it is taken."""
+    def turned_by(self, body: Node, name: str, grip: Grip, line: Callable[[], Line | None]) -> None:
+        """Have a body that the grip of that name turns turn by itself too, wherever it is taken; see `listen_round`."""
         eye = partial(getattr, self.client.camera, "position")
-        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, axis, eye)
+        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, line, eye)
+
+    def carried_by(self, parts: Sequence[Node], name: str, grip: Grip) -> None:
+        """Have the parts of a body that the grip of that name moves move by themselves too, wherever they are taken."""
+        for part in parts:
+            dragging.listen(grip.handle, partial(self._drag, name), body=part.handle)
+
+    def pulled(
+        self, parts: Sequence[Node], name: str, turned: Callable[[], npt.NDArray[np.float64]], *, least: float
+    ) -> None:
+        """Have a body that turns about the world's origin be pulled by any of its parts; see `listen_anywhere`."""
+        eye = partial(getattr, self.client.camera, "position")
+        for part in parts:
+            dragging.listen_anywhere(part.handle, partial(self._drag, name), eye, turned, least)
 
     def _round(self, axis: Callable[[], Vector]) -> dragging.Path:
         return lambda at, pulled: dragging.on_circle(at, axis(), self.client.camera.position, pulled)

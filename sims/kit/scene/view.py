@@ -38,12 +38,6 @@ class Seen:
     look_at: Place
     aspect: float
 
-    def through(self, aspect: float) -> list[float]:
-        """Viewpoint and looked-at place for a page of another shape: what fits into the one fits into the other."""
-        away = np.subtract(self.position, self.look_at)
-        away *= math.sin(math.atan(_half(self.aspect))) / math.sin(math.atan(_half(aspect)))
-        return [*map(float, np.asarray(self.look_at) + away), *self.look_at]
-
 
 def aspect(camera: Any) -> float:
     """Width over height of the page that a camera is seen in."""

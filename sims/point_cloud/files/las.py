@@ -5,12 +5,15 @@ from __future__ import annotations
 import io
 import logging
 import struct
+from typing import TYPE_CHECKING
 
-import laspy
 import numpy as np
 
 from sims.point_cloud.files.columns import CloudFileError, Table, Values, declared, enough, fits
 from sims.point_cloud.files.crs import units_of
+
+if TYPE_CHECKING:  # it takes long to load, and a server has its children read files
+    import laspy
 
 logging.getLogger("laspy").setLevel(logging.CRITICAL)  # whoever brought the file is told, not the administrator
 _HEADER, _RECORD = 227, 54  # bytes, of the oldest header and of the smallest variable length record
@@ -23,6 +26,8 @@ _RAW = ("X", "Y", "Z", "bit_fields", "raw_classification", "classification_flags
 
 def read_las(data: bytes, largest: int) -> Table:
     """Return coordinates and whatever else points have. Raises CloudFileError if it isn't LAS or LAZ or is cut off."""
+    import laspy
+
     if not data.startswith(b"LASF") or len(data) < _HEADER:
         raise CloudFileError("It isn't a LAS file, or is cut off within its header.")
     (records,) = struct.unpack_from("<I", data, 100)
