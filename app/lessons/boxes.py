@@ -16,6 +16,7 @@ from app.lessons import questions
 from app.lessons.state import AnySim, State, setting, shown
 from sims.kit.challenge import Challenge
 
+# A form by the method "dialog" leads nowhere, before the page's script has come and without it.
 NBSP = "\u00a0"
 """Keeps the line on which it is said how near one is."""
 COMMIT = '<button class="button" type="submit">That is my prediction</button>'
@@ -28,6 +29,8 @@ class Hand(NamedTuple):
     inline: Callable[[Sequence[Token]], str]
     read: Callable[[str], State]
     """The state that a query names."""
+    said_of: Callable[[State, Sequence[Token]], str]
+    """Blocks whose numbers are those of a state, wherever the sim goes."""
 
 
 class Wrong(Exception):
@@ -66,9 +69,9 @@ def predict(sim: AnySim, info: str, inside: Sequence[Token], hand: Hand) -> str:
     }  # fmt: skip
     asks = {"set": _set, "number": _number, "choice": _choices}[kind](sim, found["path"], box.items, answer, hand)
     return (
-        f'<form class="box predict" data-predict="{escape(json.dumps(data))}"><fieldset><legend>Predict</legend>'
-        f'{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
-        f'<p class="room">Your answer:</p><div class="why">{hand.blocks(box.answer)}</div></form>'
+        f'<form method="dialog" class="box predict" data-predict="{escape(json.dumps(data))}">'
+        f'<fieldset><legend>Predict</legend>{hand.blocks(box.question)}{asks}</fieldset><p role="status"></p>'
+        f'<p class="room">Your answer:</p><div class="why">{hand.said_of(to, box.answer)}</div></form>'
     )
 
 
@@ -138,8 +141,8 @@ def check(inside: Sequence[Token], hand: Hand) -> str:
         for k, item in enumerate(box.items)
     )
     return (
-        f'<form class="box check" data-check><fieldset><legend>Check yourself</legend>{hand.blocks(box.question)}'
-        f'{choices}</fieldset><p role="status"></p>'
+        f'<form method="dialog" class="box check" data-check><fieldset><legend>Check yourself</legend>'
+        f'{hand.blocks(box.question)}{choices}</fieldset><p role="status"></p>'
         f"<details><summary>Worked answer</summary>{hand.blocks(box.answer)}</details></form>"
     )
 

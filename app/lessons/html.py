@@ -70,6 +70,8 @@ class Writer:
         self._states = {"": named(sim, "", library)}
         """Those that queries name: each is solved once, when something of it is asked for."""
         self._state = self._states[""]
+        self._live = True
+        """Whether numbers move with the sim."""
         self._line = 1
         self._ids: set[str] = set()
         self._parts: list[tuple[int, str]] = []  # lines and targets of links to a part of this lesson
@@ -78,7 +80,7 @@ class Writer:
         self.teacher = ""
         self.concepts: list[str] = []
         rules: dict[str, Callable[[Token], str]] = {
-            "live": self._live, "link_open": self._link, "math_inline": self._math, "math_inline_double": self._math,
+            "live": self._of_sim, "link_open": self._link, "math_inline": self._math, "math_inline_double": self._math,
             "math_block": self._math, "math_block_label": self._math,
         }  # fmt: skip
         for name, rule in rules.items():
@@ -180,7 +182,7 @@ class Writer:
         if kind == "teacher":
             self.teacher += self._blocks(inside)
             return ""
-        hand = Hand(self._plain, self._inline, self._state_of)
+        hand = Hand(self._plain, self._inline, self._state_of, self._said_of)
         try:
             if kind == "predict":
                 return boxes.predict(self.sim, info, inside, hand)
@@ -196,6 +198,12 @@ class Writer:
         self._ids.add(f"challenge-{name}")
         return html
 
+    def _said_of(self, state: State, tokens: Sequence[Token]) -> str:
+        before, self._state, self._live = self._state, state, False
+        html = self._plain(tokens)
+        self._state, self._live = before, True
+        return html
+
     def _state_of(self, query: str) -> State:
         try:
             asked = query.removeprefix("?")
@@ -207,7 +215,7 @@ class Writer:
 
     # ---- what stands in the text
 
-    def _live(self, token: Token) -> str:
+    def _of_sim(self, token: Token) -> str:
         kinds: dict[str, Callable[[str], str]] = {"value": self._value, "drag": self._drag, "concept": self._concept}
         self._line = line(token)
         return kinds[token.meta["kind"]](token.meta["what"])
@@ -215,7 +223,7 @@ class Writer:
     def _value(self, what: str, tag: str = "span") -> str:
         try:
             value = shown(self.sim, what)
-            return value.html(self._state.value(value.path), tag)
+            return value.html(self._state.value(value.path), tag, live=self._live)
         except LookupError as error:
             return self._wrong(f"{{value:{what}}}", str(error.args[0]))
 

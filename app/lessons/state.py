@@ -210,8 +210,10 @@ class Shown:
     def _digits(self, value: Any) -> int:
         return (0 if isinstance(value, int) else 3) if self.digits is None else self.digits
 
-    def html(self, value: Any, tag: str = "span") -> str:
-        """An element that is kept up to date."""
+    def html(self, value: Any, tag: str = "span", *, live: bool = True) -> str:
+        """An element, which is kept up to date if it is `live`."""
+        if not live:
+            return f"<{tag}>{escape(self.text(value))}</{tag}>"
         digits = "data-boxed" if self.boxed else f'data-digits="{self._digits(value)}"'
         unit = f' data-unit="{escape(self.unit)}"' if self.unit else ""
         return f'<{tag} data-value="{escape(self.path)}" {digits}{unit}>{escape(self.text(value))}</{tag}>'

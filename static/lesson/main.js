@@ -13,4 +13,3 @@ const parts = [new Values(sim), new Answers(sim, steps), new Handout(data), new 
 for (const part of parts) part.begin();
 steps.begin(data.query);
 sim.begin();
-document.documentElement.classList.add("live"); // answers fold away only where they can be opened

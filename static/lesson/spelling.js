@@ -38,8 +38,11 @@ export function spelled(value, { digits, boxed, unit = "" }) {
   return (boxed === undefined ? number(value) : figure(value, null)) + (["", "°", "%"].includes(unit) ? "" : "\u2009") + unit;
 }
 
-// A link with the numbers of a state.
+// A link with the numbers of a state; where there are none, the sim that it opens has its own.
 export function filled(href, state) {
-  return href.replace(/\{value:([^{}:]+)(?::(\d+))?\}/g, (_, path, digits) =>
-    [valueAt(state, path)].flat().map((each) => Number(Number(each).toPrecision(Number(digits || 6)))).join(","));
+  const spelt = href.replace(/\{value:([^{}:]+)(?::(\d+))?\}/g, (_, path, digits) => {
+    const numbers = [valueAt(state, path)].flat();
+    return numbers.every(Number.isFinite) ? numbers.map((each) => Number(each.toPrecision(Number(digits || 6)))).join() : "none";
+  });
+  return spelt.replace(/(?<=[?&])[^=&]+=none(&|$)/g, "");
 }

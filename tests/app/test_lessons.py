@@ -18,7 +18,8 @@ from markupsafe import Markup
 from app.lessons.concepts import CONCEPTS
 from app.lessons.errors import LessonError
 from app.lessons.lesson import Lesson, begun, load
-from app.lessons.shelf import Shelf
+from app.lessons.shelf import Shelf, place
+from app.lessons.state import read
 from app.routes.rendering import by_section
 from app.settings import ROOT
 from sims import SIMS, by_slug
@@ -26,6 +27,8 @@ from sims.kit.sim import Library, Sim
 from tests.app.conftest import Local
 
 AnySim = Sim[Any, Any]
+EPIPOLAR = "left=-0.4,0.9,0.9&right=0.5,-0.8,1.2&left_pan=-8&right_pan=8"
+ASTRAY = "dataset=two-scans&process=register&turn=180&step=40"
 HEAD = "---\ntitle: Three rings\nsummary: What they do.\nsim: gimbal-lock\n---\n"
 CHECK = "::: check\nWhich?\n\n- [{a}] One{why}\n- [{b}] Two\n  Because.\n{end}"
 
@@ -61,6 +64,8 @@ def test_every_sim_has_a_lesson_that_loads(shelf: Shelf, sim: AnySim) -> None:
     assert lesson is not None
     assert lesson.steps
     assert all(step.words for step in lesson.steps), "the strip in a frame has nothing to say"
+    html = "".join(section.html for section in lesson.sections)
+    assert html.count("<form") == html.count('<form method="dialog"'), "an answer given early leads away from the page"
 
 
 def test_each_concept_is_learnt_in_one_place(shelf: Shelf) -> None:
@@ -68,6 +73,31 @@ def test_each_concept_is_learnt_in_one_place(shelf: Shelf) -> None:
     learnt = Counter(concept for lesson in lessons for concept in lesson.concepts)
     assert learnt == dict.fromkeys(CONCEPTS, 1)
     assert shelf.concepts == {concept: lesson.sim.slug for lesson in lessons for concept in lesson.concepts}
+
+
+SAID = [
+    ("camera", "", "subject.height", "{:.0f} pixels tall"),
+    ("camera", "", "subject.depth", "house is {:.1f} m away"),
+    ("camera", "", "t.2", "$t$ is (0, 1.2, {:.0f})"),
+    ("coordinate-frames", "convention=ros&to=ros&point=0.6,0.3,0.8&show_rule=0", "distance", "ball is {:.2f} m away"),
+    ("epipolar", EPIPOLAR + "&candidate=400,300", "solution.candidate.distance", "pulled {:.0f} px off the line"),
+    ("gimbal-lock", "pitch=45", "singular_values.2", "45° | {:.3f} |"),
+    ("gimbal-lock", "pitch=80", "singular_values.2", "80° | {:.3f} |"),
+    ("triangulation", "", "disparity", "At a depth of 4 m the disparity is {:.0f} px"),
+    ("triangulation", "", "depth_sigma", "At 4 m it is {:.3f} m"),
+    ("point-cloud", "voxel_size=0.05", "points_out", "{:,} points are left"),
+    ("point-cloud", "dataset=statue", "dimensions.2", "statue is {:.2f} m tall"),
+    ("point-cloud", ASTRAY, "registration.rmse", "pairs are only {:.0f} mm apart"),
+]
+
+
+@pytest.mark.parametrize(("slug", "query", "path", "words"), SAID)
+def test_what_a_text_says_of_a_state_is_so(slug: str, query: str, path: str, words: str) -> None:
+    """Numbers that must not move with the sim, as those that a question begins with."""
+    sim = by_slug(slug)
+    assert sim is not None
+    value = abs(read(sim, query, given(sim)).value(path)) * (1000 if "mm" in words else 1)
+    assert words.format(value) in place(sim).read_text("utf-8")
 
 
 # ---- what is wrong: the body, the line below the head where that is, what was found, and what is allowed
@@ -334,6 +364,17 @@ def test_the_answer_of_a_prediction_is_worked_out(
     data = json.loads(unescape(asked[1]))
     assert data["answer"] == (pytest.approx(answer) if isinstance(answer, float) else answer)
     assert data["said"] == said
+
+
+def test_numbers_of_an_answer_are_those_of_the_state_that_was_asked_for(written: Callable[..., Lesson]) -> None:
+    asked = "::: predict dof from ? to ?pitch=90\nNow {value:pitch}.\n\n- `smaller` less\n- `same` as before\n\n---\n"
+    (section,) = written(asked + "Then {value:pitch}, $\\theta = {value:dof}$.\n:::\n\n{value:pitch}\n").sections
+    before, why, after = re.split(r'<div class="why">|</form>', section.html)
+    assert ">0°</span>" in before
+    assert ">0°</span>" in after
+    assert "Then <span>90°</span>" in why
+    assert "<mn>2</mn>" in why
+    assert "data-value" not in why
 
 
 # ---- the folder of a school

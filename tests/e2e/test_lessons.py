@@ -10,6 +10,10 @@ from tests.e2e.learner import Learner
 from tests.e2e.test_accessibility import axe
 
 DESK = ViewportSize(width=1280, height=800)
+FILLED = """async (given) => {
+    const main = document.querySelector("script[src$='/main.js']").src;
+    return (await import(main.replace("main.js", "spelling.js"))).filled(...given);
+}"""
 
 
 @pytest.fixture
@@ -33,7 +37,7 @@ def at_lesson(learner: Learner) -> Learner:
     """Wait until the lesson before the learner is live."""
     learner.frame = learner.until(lambda: next(f for f in learner.page.frames if "/embed" in f.url))
     learner.until(lambda: bool(learner.sockets.states))
-    expect(learner.page.locator("html.live")).to_be_attached()
+    expect(learner.page.get_by_role("button", name="Print a handout")).to_be_visible()
     return learner
 
 
@@ -100,6 +104,10 @@ def test_a_number_in_the_text_is_moved_and_typed(reader: Learner) -> None:
     state(reader, pitch=70)
     mouse.up()
     expect(pitch).to_have_value("70")
+
+    states = {"params": {"a": 1.5, "b": [1, 2]}, "solution": {"c": None, "d": [None, 1]}}
+    link = "/x?c={value:c}&a={value:a}&d={value:d}&b={value:b}"
+    assert reader.page.evaluate(FILLED, [link, states]) == "/x?a=1.5&b=1,2", "what isn't there can't be carried on"
 
 
 def test_questions_and_challenges_are_answered(reader: Learner) -> None:
