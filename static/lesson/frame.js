@@ -10,7 +10,7 @@ export class Frame {
     this.stale = false;
     this.again = 0;
     addEventListener("message", ({ source, origin, data }) => {
-      if (origin === location.origin && source === frame.contentWindow) this.take(data);
+      if (origin === self.origin && source === frame.contentWindow) this.take(data);
     });
   }
 
@@ -77,6 +77,6 @@ export class Frame {
   }
 
   post(message) {
-    this.frame.contentWindow.postMessage(message, location.origin);
+    this.frame.contentWindow.postMessage(message, "*");
   }
 }
