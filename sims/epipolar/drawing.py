@@ -37,6 +37,8 @@ class CameraDrawing:
 
     wxyz: tuple[float, ...]
     center: Place
+    up: tuple[float, ...]
+    """The world's Z."""
     size: float
     corners: Array
     pixel: Place | None
@@ -109,6 +111,7 @@ def camera_drawing(
     return CameraDrawing(
         wxyz=orientation(eye.R),
         center=eye.center,
+        up=eye.R[6:],
         size=size,
         corners=corners(eye, size),
         pixel=None if pixel is None or not eye.shows(*pixel) else on_picture(*pixel, eye, near),

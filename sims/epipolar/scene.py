@@ -14,7 +14,7 @@ from sims.epipolar.ray import Trail
 from sims.epipolar.readouts import baseline, short_trouble
 from sims.epipolar.solution import EpipolarSolution
 from sims.kit.readout import quantity
-from sims.kit.scene.camera_figure import CameraFigure
+from sims.kit.scene.camera_figure import CameraFigure, Post
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN
 from sims.kit.view import View
@@ -172,7 +172,7 @@ class CameraInScene:
     def __init__(self, stage: Stage, name: Literal["left", "right"], letter: str, epipole: str) -> None:
         path, other = f"/{name}", OTHER[name]
         self.figure = CameraFigure(stage, path, name, letter)
-        self.post = stage.lines(f"{path}/post", "ghost", width=1.2)
+        self.post = Post(stage, path)
         self.pixel = stage.ball(f"{path}/pixel", 0.022, name)
         self.others = stage.cloud(f"{path}/others", name, size=0.016)
         self.line = stage.lines(f"{path}/line", other, width=3.0)
@@ -189,7 +189,7 @@ class CameraInScene:
     def draw(self, d: CameraDrawing) -> None:
         self.figure.node.pose(d.wxyz, d.center)
         self.figure.draw(d.corners, d.size)
-        self.post.stroke(((0.0, 0.08, -0.12 * d.size), (0.0, d.center[2], -0.12 * d.size)))
+        self.post.draw(d.up, d.center[2], d.size)
         self.pixel.place(d.pixel)
         self.epipole.place(d.epipole)
         self.toward.stroke(None if d.epipole is None else (ORIGIN, d.epipole))

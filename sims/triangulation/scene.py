@@ -10,7 +10,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.camera import Camera
 from sims.kit.readout import THIN, figure, quantity
-from sims.kit.scene.camera_figure import CameraFigure
+from sims.kit.scene.camera_figure import CameraFigure, Post
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN, Pixel
 from sims.kit.world_drawing import draw_in_scene
@@ -29,8 +29,6 @@ BACKWARD = 4.0
 LEAST_AHEAD = 0.5
 """How much of a line of sight leads ahead at least where words stand between both."""
 RADIUS = 0.06
-POST = (0.0, 0.08, -0.12)
-"""Where the post begins on which a camera stands, in its axes."""
 WARNINGS = {"parallel": "⚠ parallel rays: no finite point", "behind": "⚠ no point in front: the rays diverge"}
 
 
@@ -133,7 +131,7 @@ class CameraInScene:
         path = f"/{name}"
         self.name = name
         self.figure = CameraFigure(stage, path, name, letter)
-        self.post = stage.lines(f"{path}/post", "ghost", width=1.2)
+        self.post = Post(stage, path)
         self.pixel = stage.ball(f"{path}/pixel", 0.016, name)
         self.ray = stage.lines(f"{path}/ray", name, width=1.8)
         stage.linked("focal", self.figure.edges)
@@ -148,8 +146,7 @@ class CameraInScene:
         """Draw the camera with its measured pixel; `sight` is x and y of that at depth 1, in the camera's axes."""
         self.figure.node.pose(standing.wxyz, standing.center)
         self.figure.draw(standing.corners, size)
-        down = (standing.center[2] - POST[1]) * camera.R[:, 2]
-        self.post.stroke((POST, tuple((POST - down).tolist())))
+        self.post.draw(camera.R[:, 2], standing.center[2])
         near = standing.corners.item(0, 2)
         self.sight = x, y = sight
         self.pixel.pose(position=(x * near, y * near, near))

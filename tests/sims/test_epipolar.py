@@ -701,6 +701,8 @@ def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: Epi
         close(seen[:3, 3], C, within=1e-12)
         close(model.world_pose(f"/{side}_center")[:3, 3], C, within=1e-12)
         assert model.visible(f"/{side}_center") == (params.own is None), "somebody's pair can't be bent"
+        foot = ends(rig, f"/{side}/post")[1]
+        close(foot[2], 0.0, within=1e-6)
         corners = pixels(params, side, model.points(f"/{side}/picture"))
         close(corners[[0, 2]], [(-0.5, -0.5), np.add(last(params, side), 0.5)], within=2e-2)
         ray = model.points("/rays")[SIDES.index(side)]

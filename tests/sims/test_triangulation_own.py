@@ -441,8 +441,7 @@ def test_cameras_rays_and_pictures_are_drawn_where_they_stand(stage: Rig, p: Tri
         corners = [project(P @ T, each) for each in model.points(f"/{side}/picture")]
         frame = [(-0.5, -0.5), (width - 0.5, -0.5), (width - 0.5, height - 0.5), (-0.5, height - 0.5)]
         np.testing.assert_allclose(corners, frame, rtol=0, atol=2e-2)
-        foot = model.points(f"/{side}/post")[0, 1]
-        assert abs(foot[2]) < 0.15, "it stands on the ground"
+        assert model.points(f"/{side}/post")[0, 1, 2] == pytest.approx(0.0, abs=1e-6), "it stands on the ground"
     np.testing.assert_allclose(model.points("/baseline").reshape(-1, 3), centers, rtol=0, atol=1e-6)
     if s.point is not None:
         np.testing.assert_array_equal(model.world_pose(f"/{p.method}")[:3, 3], s.point)

@@ -55,3 +55,15 @@ class CameraFigure:
                 edges[:4, 0] = back
             self.edges.pieces(edges)
             self.picture.vertices(corners)
+
+
+class Post:
+    """The post on which a camera stands, straight down to the ground however the camera is turned."""
+
+    def __init__(self, stage: Stage, camera: str) -> None:
+        self.line = stage.lines(f"{camera}/post", "ghost", width=1.2)
+
+    def draw(self, up: npt.ArrayLike, height: float, size: float = 1.0) -> None:
+        """Below a camera at a height; `up` is the world's Z in the camera's axes, `size` that of its body."""
+        top, z = np.array([0.0, 0.08, -0.12 * size]), np.asarray(up, dtype=float)
+        self.line.stroke((top.tolist(), (top - (height + top @ z) * z).tolist()))
