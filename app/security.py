@@ -33,7 +33,8 @@ class Headers:
                 "object-src 'none'",
                 "base-uri 'none'",
                 "form-action 'self'",
-                f"frame-ancestors {frame_ancestors}",
+                # "*" would leave out frames within a sandboxed one: those around them have no origin.
+                *([] if frame_ancestors == "*" else [f"frame-ancestors {frame_ancestors}"]),
             ]
         )
 

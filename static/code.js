@@ -7,7 +7,7 @@ let waiting = 0;
 let asking = new AbortController();
 
 addEventListener("message", ({ origin, source, data }) => {
-  if (origin !== location.origin || source !== frame.contentWindow || data?.type !== "sim3:state") return;
+  if (origin !== self.origin || source !== frame.contentWindow || data?.type !== "sim3:state") return;
   if (data.query === shown) return;
   shown = data.query;
   clearTimeout(waiting);

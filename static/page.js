@@ -4,12 +4,12 @@ const frame = document.querySelector("iframe[data-slug]");
 const options = ["view", "controls", "theme"];
 
 addEventListener("message", (event) => {
-  if (event.origin !== location.origin || event.source !== frame?.contentWindow) return;
+  if (event.origin !== self.origin || event.source !== frame?.contentWindow) return;
   if (event.data?.type === "sim3:state") follow(event.data.query);
 });
 
 // Whichever of the two starts first: the sim tells of itself when it is ready, or when it is asked.
-frame?.contentWindow.postMessage({ type: "sim3:get" }, location.origin);
+frame?.contentWindow.postMessage({ type: "sim3:get" }, "*");
 
 // The sim tells its parameters; the options that this page was opened with stay beside them.
 function follow(query) {
@@ -61,6 +61,26 @@ async function copy(button) {
     getSelection().selectAllChildren(code);
     status.textContent = document.execCommand("copy") ? "Copied." : "The code is selected: copy it with Ctrl+C.";
   }
+}
+
+// A frame that is sandboxed without allow-forms drops a form without a word. Who takes it here hears of it all the same;
+// what only the server can take is said.
+document.addEventListener("click", ({ target }) => {
+  const button = target.closest("button[type=submit], button:not([type])");
+  if (!button?.form) return;
+  let told = false;
+  button.form.addEventListener("submit", () => (told = true), { capture: true, once: true });
+  setTimeout(() => told || sendAnyway(button));
+});
+
+function sendAnyway(button) {
+  const { form } = button;
+  if (!form.reportValidity()) return;
+  if (!form.dispatchEvent(new SubmitEvent("submit", { bubbles: true, cancelable: true, submitter: button }))) return;
+  if (form.method === "get") location.assign(`${form.action}?${new URLSearchParams(new FormData(form))}`);
+  else button.after(Object.assign(document.createElement("p"), {
+    role: "alert", className: "wrong", textContent: `The page around this one doesn’t let it send anything. Open ${location.href} in a tab of its own.`,
+  }));
 }
 
 // The dialog of what a state is handed on by; without it the link leads to the same as a page.

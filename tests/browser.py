@@ -17,6 +17,8 @@ from typing import TypedDict
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+BLOCKING_STORAGE = "--test-third-party-cookie-phaseout"
+"""For tests: as schools have it set, frames of other sites have no cookies and no storage."""
 WITHOUT_COMPOSITING = "--disable-gpu-compositing"
 """For tests: where WebGL is drawn in software, the page around it is put together in less time without it."""
 QUIET = (

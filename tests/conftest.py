@@ -10,7 +10,7 @@ import pytest
 from hypothesis import settings
 
 from sims.kit import child
-from tests.browser import WITHOUT_COMPOSITING, LaunchOptions, launch_options
+from tests.browser import BLOCKING_STORAGE, WITHOUT_COMPOSITING, LaunchOptions, launch_options
 from tests.server import shared_host
 
 # The examples of a property are the same in every run, whatever else runs: `make fuzz` looks for others. How long one
@@ -34,7 +34,7 @@ def pytest_collection_finish() -> None:
 @pytest.fixture(scope="session")
 def browser_type_launch_args() -> LaunchOptions:
     """For pytest-playwright's own `browser`, which lives as long as the test run."""
-    return launch_options(WITHOUT_COMPOSITING)
+    return launch_options(WITHOUT_COMPOSITING, BLOCKING_STORAGE)
 
 
 @pytest.fixture(scope="session", autouse=True)

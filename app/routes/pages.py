@@ -158,8 +158,9 @@ def _file(request: Request, files: Mapping[str, bytes], name: str, *, known: boo
     if not known or name not in files:
         raise HTTPException(404, "There is no such file.")
     data, headers = files[name], {**FOR_EVER, "vary": "accept-encoding"}
-    if "gzip" in request.headers.get("accept-encoding", ""):
-        data, headers["content-encoding"] = rendering.compressed(data), "gzip"
+    accepted = {each.partition(";")[0].strip() for each in request.headers.get("accept-encoding", "").split(",")}
+    if coding := next((each for each in rendering.COMPRESSIONS if each in accepted), None):
+        data, headers["content-encoding"] = rendering.compressed(data, coding), coding
     kind = "text/css" if name.endswith(".css") else "text/javascript"
     return Response(data, media_type=kind, headers=headers)
 

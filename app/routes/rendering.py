@@ -5,9 +5,10 @@ from __future__ import annotations
 import functools
 import gzip
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+import zstandard
 from fastapi import HTTPException, Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.templating import Jinja2Templates
@@ -129,10 +130,16 @@ def viewer(
     return response
 
 
+COMPRESSIONS: dict[str, Callable[[bytes], bytes]] = {
+    "zstd": zstandard.ZstdCompressor(level=19).compress, "gzip": functools.partial(gzip.compress, compresslevel=9),
+}  # fmt: skip
+"""For files that never change, the best first: zstd makes viser's client a fifth smaller; browsers take it over TLS."""
+
+
 @functools.cache
-def compressed(data: bytes) -> bytes:
-    """A file that never changes, compressed once."""
-    return gzip.compress(data, 9)
+def compressed(data: bytes, coding: str) -> bytes:
+    """Such a file, compressed once."""
+    return COMPRESSIONS[coding](data)
 
 
 def sim_or_404(slug: str) -> AnySim:

@@ -52,12 +52,15 @@ def snippets(address: str, title: str, height: int = HEIGHT) -> list[Snippet]:
             f":::{{iframe}} {address}\n:width: 100%\n:::",
         ),
         "quarto": ("Quarto", "Paste it into the document, for output as HTML.", f"```{{=html}}\n{frame}\n```"),
-        "notebook": ("Notebook cell (Jupyter, Colab)", "Paste it into a code cell and run it.", _cell(address, height)),
+        "notebook": (
+            "Notebook cell (Jupyter, Colab)", "Paste it into a code cell and run it.", _cell(address, title, height),
+        ),
     }.items()]  # fmt: skip
 
 
-def _cell(address: str, height: int) -> str:
-    extras = json.dumps([f'allow="{ALLOW}"'])
+def _cell(address: str, title: str, height: int) -> str:
+    """IPython makes a frame of it, and puts the extras into that as they are."""
+    extras = json.dumps([f'title="{escape(title)}"', f'allow="{ALLOW}"'], ensure_ascii=False)
     return (
         "from IPython.display import IFrame\n\n"
         f'IFrame({json.dumps(address)}, width="100%", height={height}, extras={extras})'

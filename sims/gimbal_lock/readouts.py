@@ -22,7 +22,7 @@ def caption(p: GimbalParams, s: GimbalSolution) -> str:
     """What to do, or what to see."""
     if s.lost_axis is not None:
         return (
-            "One lamp is out: outer and inner ring do the same. Pull the aircraft about the dark arrow: it won’t turn."
+            "One lamp is out: outer and inner ring do the same. Pull the aircraft about the marked arrow: it won’t go."
         )
     if s.near:
         times = figure(s.effort, 0)

@@ -28,7 +28,7 @@ def caption(p: CloudParams, s: CloudSolution) -> str:
     if s.selected is not None:
         return "Its nearest points say how the surface lies: the plane through them, and how flat they are."
     if p.voxel_size > 0.0:
-        return "The points in each cell have become their mean: click one to see its cell, and what was merged."
+        return "The points in each cell have become their mean: point at one, or click it, to see its cell."
     return "Thin the cloud with the voxel size, colour it, or click a point to read what is known of it."
 
 

@@ -43,11 +43,11 @@ SIM = Sim(
     panes=panes,
     offers=QuaternionOffers,
     actions=(
+        Action("play", "Play", "See what is shown happen, from the start on; nothing comes of it", actions.play),
         Action(
             "apply", "Make this turn", "Turn by θ about n: where that leads is the start of the next turn, q ⊗ start",
             actions.apply, aliases=("compose",),
         ),
-        Action("play", "Play", "See what is shown happen, from the start on; nothing comes of it", actions.play),
         Action("undo", "Undo last turn", "Take back the last turn made", actions.undo, COMPOSED),
     ),
     handles={

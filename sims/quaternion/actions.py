@@ -15,7 +15,7 @@ from sims.kit.params import LONGEST_VALUE
 from sims.kit.sim import Step
 from sims.kit.spelling import spell
 from sims.quaternion import ball, dial
-from sims.quaternion.params import MOST_TURNS, REACH, QuaternionParams, Triple
+from sims.quaternion.params import MOST_TURNS, REACH, TWICE, WHOLE, QuaternionParams, Triple
 from sims.quaternion.solution import solve
 
 DIGITS = 12
@@ -90,7 +90,17 @@ def _turned(start: Array, axis: Any, angle: float) -> Array:
 
 def play(p: QuaternionParams) -> Iterator[Step]:
     """What is shown happens: the turn, two turns in both orders, or three ways from start to target."""
-    yield from {"order": _both, "path": _ways}.get(p.topic, _turn)(p)
+    yield from {"turn": _rounds, "order": _both, "path": _ways}.get(p.topic, _turn)(p)
+
+
+def _rounds(p: QuaternionParams) -> Iterator[Step]:
+    once = "Once round: the object is where it was, and q, which goes half as far, has become −q."
+    yield Step({"angle": 0.0, "t": 1.0}, 0.0, words=once)
+    yield Step({"angle": WHOLE}, SECONDS, words=once)
+    twice = "Round again: only now is q what it was."
+    yield Step({"angle": WHOLE}, 0.3, words=once)
+    yield Step({"angle": TWICE}, SECONDS, words=twice)
+    yield Step({"angle": p.angle}, 0.0, words=twice)
 
 
 def _turn(p: QuaternionParams) -> Iterator[Step]:

@@ -37,7 +37,7 @@ def caption(p: QuaternionParams, s: QuaternionSolution) -> str:
         return "Past a whole turn q is the −q of before. Go on to 720°: there it is q again."
     if p.angle == 0.0 and p.turns:
         return "The turn is made, and is the start now. Choose another axis and angle for the next one."
-    return "Pull θ round the axis, twice: q goes half as far, so after one whole turn q has become −q."
+    return "Play, or pull θ round the axis twice: q goes half as far, so after one whole turn q has become −q."
 
 
 def readouts(p: QuaternionParams, s: QuaternionSolution) -> Iterator[Readout]:

@@ -111,8 +111,8 @@ class Axis:
         self.tip.pose(position=s.tip.tolist())
         again = p.angle > WHOLE
         radians = math.radians(p.angle - WHOLE if again else p.angle)
-        self.turn.show(p.angle > 0.0)
         self.lap.show(again)
+        self.line.show(p.angle > 0.0)
         self.line.arc(ARC, radians)
         self.end.pose((math.cos(radians / 2), 0.0, 0.0, math.sin(radians / 2)))
         middle = BESIDE * math.cos(radians / 2), BESIDE * math.sin(radians / 2), 0.0

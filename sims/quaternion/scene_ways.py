@@ -50,7 +50,7 @@ class Object:
         self.thin = stage.lines(f"{path}/ghost", "ink", width=1.8)
         stage.linked("interpolation", self.thick)
         stage.linked("t", self.thick, self.thin)
-        self.nose = stage.ball(f"{path}/nose", 0.045, "held")
+        self.nose = stage.ball(f"{path}/nose", 0.045, "ink")
         stage.label(f"{path}/label", NAMES[name], (0.0, 0.0, 1.5 * RADIUS))
 
     def draw(self, way: Way, paths: bool, *, chosen: bool) -> None:

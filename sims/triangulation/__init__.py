@@ -1,7 +1,8 @@
 """triangulation: a 3D point from its places in two pictures, and how sure it is.
 
-Two parallel cameras stand at a height of 1 m and look along +Y. Each picture gives a ray; three methods say where
-the rays meet, or nearly meet, and noise in the pixels says how far that may be from the truth.
+Two parallel cameras stand at a height of 1 m and look along +Y, or in their place a stereo pair of somebody's. Each
+picture gives a ray; three methods say where the rays meet, or nearly meet, and noise in the pixels says how far that
+may be from the truth.
 """
 
 from __future__ import annotations

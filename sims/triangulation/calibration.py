@@ -157,6 +157,8 @@ def _rectified(left: Found, right: Found) -> Rig | None:
         and _alike([cy, cy_right])
         and np.allclose(T[:3, :3], np.eye(3), rtol=0.0, atol=TURNED)
         and math.hypot(y, z) <= ALONG * x
+        and x > 0.0
+        and right["size"] in (left["size"], [])
     ):
         return None
     if not left["size"]:

@@ -153,6 +153,8 @@ class TriangulationParams(Params):
         """The curve from which the change of one number begins, as long as it is that number which changes."""
         if len(changes) != 1 or (name := next(iter(changes))) not in OF_CURVE:
             return {}
+        if self.pair and name == "focal":  # its cameras have their own
+            return {}
         now = tuple([getattr(self, each) for each in OF_CURVE])
         if self.before and all(
             was == is_now for each, was, is_now in zip(OF_CURVE, self.before, now, strict=True) if each != name

@@ -41,7 +41,7 @@ def seen(p: TriangulationParams, s: TriangulationSolution) -> list[Array]:
 
 
 class TriangulationScene:
-    """Both cameras stand at a height of 1 m, or its middle is there, and look along Y, or to both sides of it."""
+    """The middle between both cameras is at a height of 1 m; they look along Y, somebody's own to both sides of it."""
 
     def __init__(self, stage: Stage) -> None:
         stage.ground(size=16.0, cell=0.5)

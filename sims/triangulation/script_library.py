@@ -55,7 +55,7 @@ def triangulate(pixels):
 # The optimal method first moves both pixels, by as little as can be, to where their rays meet.
 x, y, z = R_right @ (left - right)
 E = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ R_right @ R_left.T  # [t]ₓ R
-between = np.linalg.inv(K_right).T @ E @ np.linalg.inv(K_left)  # the fundamental matrix
+between = cv2.normalize(np.linalg.inv(K_right).T @ E @ np.linalg.inv(K_left), None)  # the fundamental matrix
 corrected = np.array(cv2.correctMatches(between, pixels[:1, None], pixels[1:, None]))[:, 0, 0]
 
 by_method = {"dlt": {"point": triangulate(pixels)}, "optimal": {"point": triangulate(corrected)}}

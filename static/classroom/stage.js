@@ -1,4 +1,5 @@
-// A sim in a frame, or a lesson with its sim, by the messages that any page around one may use.
+// A sim in a frame, or a lesson with its sim, by the messages that any page around one may use. In a sandboxed frame
+// both are without an origin, and a message can be sent to that by no other name than "*".
 export const data = JSON.parse(document.getElementById("class").textContent);
 
 export class Stage {
@@ -6,7 +7,7 @@ export class Stage {
     this.frame = frame;
     this.takers = takers;
     addEventListener("message", ({ source, origin, data: message }) => {
-      if (source === frame.contentWindow && origin === location.origin) takers[message?.type]?.(message);
+      if (source === frame.contentWindow && origin === self.origin) takers[message?.type]?.(message);
     });
   }
 
@@ -15,6 +16,6 @@ export class Stage {
   }
 
   set(params, seconds) {
-    this.frame.contentWindow.postMessage({ type: "sim3:set", params, ...(seconds ? { seconds } : {}) }, location.origin);
+    this.frame.contentWindow.postMessage({ type: "sim3:set", params, ...(seconds ? { seconds } : {}) }, "*");
   }
 }

@@ -12,7 +12,7 @@ export class Around {
     if (parent === window) return;
     const inside = this.sim.frame.contentWindow;
     addEventListener("message", ({ source, origin, data }) => {
-      if (source === inside && origin === location.origin && SAID.has(data?.type)) parent.postMessage(data, "*");
+      if (source === inside && origin === self.origin && SAID.has(data?.type)) parent.postMessage(data, "*");
       if (source === parent && TAKEN.has(data?.type)) this.set(data);
     });
     document.addEventListener("submit", ({ target }) => this.predicted(target));

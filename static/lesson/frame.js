@@ -12,7 +12,7 @@ export class Frame {
     this.heard = false; // whether the sim has said anything
     this.waiting = null; // what it is to be set to when it can hear
     addEventListener("message", ({ source, origin, data }) => {
-      if (origin === location.origin && source === frame.contentWindow) this.take(data);
+      if (origin === self.origin && source === frame.contentWindow) this.take(data);
     });
   }
 
@@ -88,6 +88,6 @@ export class Frame {
   }
 
   post(message) {
-    this.frame.contentWindow.postMessage(message, location.origin);
+    this.frame.contentWindow.postMessage(message, "*");
   }
 }

@@ -22,10 +22,8 @@ export class TakeHome {
     const { sweep, what } = this.form.elements;
     sweep.addEventListener("change", () => this.suggest());
     this.form.addEventListener("input", ({ target }) => target.name !== "what" && (what.value = "sweep"));
-    this.form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      this.save();
-    });
+    this.form.addEventListener("submit", (event) => event.preventDefault());
+    this.form.querySelector(".s3-primary").addEventListener("click", () => this.save()); // heard in sandboxed frames too
     await this.trying(async () => this.offer(await (await asked(this.place("sweeps"))).json()));
   }
 

@@ -20,12 +20,14 @@ from playwright.sync_api import Browser
 from segno import make
 
 from app.routes.sharing import FORM, LONGEST, linked
-from app.routes.snippets import snippets
+from app.routes.snippets import ALLOW, snippets
 from sims import SIMS
 from tests.server import PATIENCE, Server
 
 PREFIX = "/geo/sim3"
 LINK = 'https://school.example/sims/euler-angles/embed?yaw=45&only=yaw,pitch&order="zyx"'
+FILTERED = {"src", "width", "height", "name", "scrolling", "frameborder", "title", "style", "class", "id"}
+"""What HTMLPurifier, which Moodle filters by, leaves of a frame; others leave more."""
 LESSON = """---
 title: Our own lesson
 summary: Turn it.
@@ -205,7 +207,16 @@ def test_every_text_holds_the_link_as_it_is_where_it_is_pasted() -> None:
     assert isinstance(call, ast.Expr)
     assert isinstance(call.value, ast.Call)
     assert ast.literal_eval(call.value.args[0]) == LINK
-    assert {word.arg: ast.literal_eval(word.value) for word in call.value.keywords}["height"] == 480
+    given = {word.arg: ast.literal_eval(word.value) for word in call.value.keywords}
+    assert given["height"] == 480
+    made = Elements(f"<iframe {' '.join(given['extras'])}></iframe>").one("iframe")
+    assert (made["title"], made["allow"]) == ("A & “B”", ALLOW)
+
+
+def test_what_an_editor_that_filters_leaves_of_a_frame_shows_the_sim() -> None:
+    frame = Elements(snippets(LINK, "A & “B”", 480)[0].text).one("iframe")
+    left = {name: value for name, value in frame.items() if name in FILTERED}
+    assert left == {"src": LINK, "title": "A & “B”", "width": "100%", "height": "480", "style": "border: 0"}
 
 
 # ---- what other sites ask

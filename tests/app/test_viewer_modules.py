@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 
 import httpx
+import pytest
 
 from app.routes.rendering import modules
+from sims.kit import viser_client
 
 PAGE = "/sims/euler-angles/embed"
 
@@ -32,3 +34,17 @@ def test_no_script_is_kept_under_a_wrong_fingerprint(http: httpx.Client) -> None
     assert http.get(f"{start}x/{name}").status_code == 404
     assert http.get(f"{start}/none.js").status_code == 404
     assert http.get(f"{start}/..%2Fpage.js").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("accepted", "coding"),
+    [("gzip, deflate, br, zstd", "zstd"), ("gzip, deflate", "gzip"), ("gzip;q=0.5, *;q=0", "gzip"), ("identity", None)],
+)
+def test_what_never_changes_comes_as_small_as_the_browser_can_read_it(
+    http: httpx.Client, accepted: str, coding: str | None
+) -> None:
+    address = f"/viser/{viser_client.fingerprint()}/client.js"
+    answer = http.get(address, headers={"accept-encoding": accepted})
+    assert answer.headers.get("content-encoding") == coding
+    assert "accept-encoding" in answer.headers["vary"].lower()
+    assert answer.content == viser_client.files()["client.js"]

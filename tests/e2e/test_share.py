@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from html import escape
 from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
+from playwright.sync_api import Frame, Route
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import PAGE, CourseSite
@@ -18,6 +20,12 @@ new PerformanceObserver((list) => list.getEntries().forEach((e) => (window.shift
     .observe({ type: "layout-shift", buffered: true });"""
 """What is laid out before anything is painted, as Chromium does with a frame whose style is still on its way, is seen by
 nobody."""
+SANDBOX = 'sandbox="allow-scripts"'
+
+
+def unpainted(route: Route) -> None:
+    """In place of viser's client: nothing is painted."""
+    route.fulfill(body="", content_type="text/javascript")
 
 
 @pytest.fixture
@@ -26,8 +34,44 @@ def course() -> Iterator[CourseSite]:
         yield site
 
 
+def framed(learner: Learner, course: CourseSite, path: str, sandbox: str) -> Frame:
+    """A page of ours in a frame of a page of another site."""
+    course.page = PAGE.format(address=f"{learner.url}{path}", attributes=sandbox, before="", after="")
+    learner.page.goto(course.url)
+    return learner.until(lambda: next(each for each in learner.page.frames if each.url.startswith(learner.url)))
+
+
 def link(learner: Learner) -> str:
     return learner.frame.get_by_role("textbox", name="Link to exactly this state").input_value()
+
+
+def test_the_dialog_follows_its_options_and_gives_the_focus_back(classroom: Classroom) -> None:
+    learner = classroom.open_column("euler-angles/embed?yaw=45&view=4,1,2,0,0,0", size={"width": 1280, "height": 800})
+    page = learner.page
+    page.evaluate("Object.defineProperty(document, 'fullscreenEnabled', { value: false })")
+    learner.find("button", "Share").press("Enter")
+    dialog = page.get_by_role("dialog", name="Share Euler angles")
+    dialog.wait_for()
+    assert page.evaluate("getSelection().toString()") == link(learner), "it can be copied at once"
+    assert parse_qs(urlsplit(link(learner)).query)["view"] == ["4,1,2,0,0,0"]
+
+    dialog.get_by_role("checkbox", name="seen from where you look now").press(" ")
+    dialog.get_by_role("radio", name="only these").press(" ")
+    dialog.get_by_role("checkbox", name="Yaw").press(" ")
+    dialog.get_by_role("combobox", name="one challenge").select_option("other-order")
+    wanted = f"{learner.url}/sims/euler-angles/embed?yaw=45&challenge=other-order&only=yaw"
+    learner.until(lambda: link(learner) == wanted)
+    assert escape(wanted) in dialog.get_by_role("textbox", name="For Moodle", include_hidden=True).input_value()
+    assert learner.url + str(dialog.locator("iframe").get_attribute("src")) == wanted
+
+    dialog.get_by_role("button", name="QR code of the link").press("Enter")
+    large = page.get_by_role("button", name="QR code of the link, large")
+    assert large.locator("span").inner_text() == wanted
+    large.press("Enter")
+    learner.until(lambda: page.evaluate("document.activeElement.className") == "share-qr")
+    page.keyboard.press("Escape")
+    learner.until(lambda: page.evaluate("document.activeElement.textContent") == "Share")
+    assert not dialog.count()
 
 
 def test_a_lesson_is_shared_with_the_state_and_the_view_of_its_sim(classroom: Classroom) -> None:
@@ -56,13 +100,11 @@ def test_the_example_for_developers_works_wherever_it_is_put(classroom: Classroo
     page.locator("#error").get_by_text("yaw").wait_for()
 
 
-def test_check_says_what_a_sandboxed_frame_of_another_site_allows(classroom: Classroom, course: CourseSite) -> None:
+@pytest.mark.parametrize("sandbox", ["", SANDBOX], ids=["of another site", "sandboxed"])
+def test_check_says_what_a_frame_allows(classroom: Classroom, course: CourseSite, sandbox: str) -> None:
     learner = classroom.enter()
     learner.page.add_init_script(NO_SHIFTS)
-    address = f"{learner.url}/check"
-    course.page = PAGE.format(address=address, attributes='sandbox="allow-scripts"', before="", after="")
-    learner.page.goto(course.url)
-    frame = learner.until(lambda: next(each for each in learner.page.frames if each.url == address))
+    frame = framed(learner, course, "/check", sandbox)
     frame.locator(".verdict[data-found=yes]").wait_for()
     found = frame.evaluate(
         "Object.fromEntries([...document.querySelectorAll('.check')].map(e => [e.dataset.check, e.dataset.found]))"
@@ -70,6 +112,52 @@ def test_check_says_what_a_sandboxed_frame_of_another_site_allows(classroom: Cla
     needed = dict.fromkeys(("scripts", "webgl", "websocket", "worker", "size"), "yes")
     assert found == {**needed, "clipboard": "no", "fullscreen": "no", "storage": "no"}
     assert frame.evaluate("window.shifts") == 0
+
+
+@pytest.mark.parametrize("sandbox", ["", SANDBOX], ids=["of another site", "sandboxed"])
+def test_a_lesson_in_a_frame_moves_its_sim_and_takes_answers(
+    classroom: Classroom, course: CourseSite, sandbox: str
+) -> None:
+    learner = classroom.enter()
+    learner.page.route("**/viser/**", unpainted)
+    learner.witness.expect("Blocked form submission")
+    frame = framed(learner, course, "/sims/euler-angles?yaw=45", sandbox)
+    learner.until(lambda: "yaw=45" in frame.child_frames[0].url)
+    frame.locator("[data-show]").nth(1).evaluate("(button) => button.click()")
+    learner.until(lambda: "yaw=45" not in frame.child_frames[0].url and "yaw=45" not in frame.url)
+    predict = frame.locator("[data-predict]").first
+    predict.locator(".choice").first.click()
+    predict.get_by_role("button").click()
+    learner.until(lambda: predict.get_attribute("data-answered") in ("right", "wrong"))
+
+
+def test_a_class_in_a_frame_is_joined_and_one_that_cant_be_opened_there_says_so(
+    classroom: Classroom, course: CourseSite
+) -> None:
+    teacher = classroom.enter()
+    teacher.page.route("**/viser/**", unpainted)
+    frame = framed(teacher, course, "/class?sim=euler-angles&yaw=45", "")
+    frame.get_by_role("button", name="Open the class").click()
+    teacher.until(lambda: "yaw=45" in frame.child_frames[0].url)
+    code = frame.locator(".invite .code").inner_text()
+
+    learner = classroom.enter()
+    learner.page.route("**/viser/**", unpainted)
+    learner.witness.expect("Blocked form submission")
+    frame = framed(learner, course, "/class", SANDBOX)
+    frame.get_by_role("button", name="Open the class").click()
+    frame.get_by_role("alert").get_by_text("in a tab of its own").wait_for()
+    frame.get_by_role("textbox").fill(code)
+    frame.get_by_role("button", name="Join").click()
+    learner.until(lambda: "yaw=45" in frame.child_frames[0].url)
+    learner.until(lambda: learner.sockets.state["params"]["yaw"] == 45)
+    sim = frame.child_frames[0]
+    sim.locator("[data-slide=yaw]").press("ArrowRight")
+    learner.until(lambda: "yaw=46" in sim.url)
+    teacher.page.frames[1].get_by_role("button", name="All eyes here").click()
+    learner.until(lambda: "yaw=45" in sim.url)
+    teacher.page.frames[1].get_by_role("button", name="Go on").click()
+    learner.until(lambda: "yaw=46" in sim.url)
 
 
 def test_check_says_what_to_ask_for(classroom: Classroom) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sims.triangulation import TriangulationParams, solve
+from sims.triangulation.calibration import toe_in
 from sims.triangulation.rig import rig
 
 RNG = np.random.default_rng(5)
@@ -74,6 +75,18 @@ def test_each_method_makes_small_what_the_table_says() -> None:
 def test_doffs_are_added_to_the_disparity() -> None:
     s = solved(TriangulationParams(doffs=30.0))
     assert s.point.item(1) == pytest.approx(600.0 * 0.6 / (90.0 + 30.0))
+
+
+def test_marks_of_turned_cameras_differ_by_less_than_nothing_and_yet_there_is_a_point() -> None:
+    p = TriangulationParams(**toe_in(TriangulationParams()))
+    s = solved(p)
+    assert (round(p.left_uv[0]), round(p.right_uv[0])) == (560, 1288)
+    assert s.disparity is None
+    assert s.depth == pytest.approx(s.point_left.item(2)) == pytest.approx(4.045, abs=1e-3)
+    np.testing.assert_allclose(s.least_vector[:3] / s.least_vector[3], s.by_method["dlt"].point)
+    longer = solved(p.moved({"baseline": 1.0}))
+    np.testing.assert_allclose(longer.point, s.point)
+    assert longer.depth_sigma < s.depth_sigma
 
 
 def test_twice_the_baseline_at_the_same_point_is_half_the_doubt() -> None:

@@ -225,7 +225,8 @@ def test_the_object_is_turned_about_the_axis_that_is_drawn(rig: Rig, axis: tuple
 def test_the_arc_lies_across_the_axis_and_ends_at_the_angle(rig: Rig, p: QuaternionParams) -> None:
     rig.show(p)
     alone = p.topic not in ("order", "path")
-    assert rig.model.visible("/axis/turn") == (alone and p.angle > 0)
+    assert rig.model.visible("/axis/turn") == rig.model.visible("/angle") == alone
+    assert rig.model.visible("/axis/turn/arc") == (alone and p.angle > 0)
     assert rig.model.visible("/axis/turn/lap") == (alone and p.angle > 360), "a whole turn is behind it"
     if p.angle == 0 or not alone:
         return

@@ -272,6 +272,8 @@ def test_a_longer_baseline_makes_the_same_point_surer_and_it_is_said() -> None:
         == f"A longer baseline, a surer depth: from {said[0]} to {said[1]}\u2009m at the same point."
     )
     assert "before" in words(panes_of(p)[2])
+    other = TOE_IN.moved({"focal": 900.0})
+    assert (other.before, solved(other).depth_sigma) == (None, pytest.approx(was.depth_sigma)), "it has its own"
 
 
 # ---- texts
@@ -307,6 +309,8 @@ def test_a_pasted_pair_is_taken_as_it_stands_and_its_link_brings_it_back() -> No
     assert TriangulationParams.from_query(p.query_items().items()) == p
     assert set(SIM.offers(p).idle()) == {"focal", "cx", "cy", "doffs", "width", "height"}
     assert not SIM.offers(START).idle()
+    assert (p.label("hold"), START.label("hold")) == ("Moving b keeps", "Moving b or f keeps")
+    assert p.about("focal").startswith("This says nothing of a stereo pair of your own")
 
 
 @pytest.mark.parametrize(
@@ -331,19 +335,20 @@ def test_the_length_of_T_is_metres_or_millimetres_or_said_to_be_neither(
 
 def test_a_rectified_pair_of_any_format_is_a_rectified_rig() -> None:
     parallel = pair((700.0, 700.0, 640.0, 360.0) * 2, (0.0, 0.0, 0.0), (-0.2, 0.0, 0.0))
-    p = taken(text(parallel), taken(text(WANTED)))
+    one_size = {"imageSize2": "1280, 720"}
+    p = taken(text(parallel, **one_size), taken(text(WANTED)))
     assert (p.own, p.own_size, p.focal, p.baseline, p.cx, p.doffs) == (None, None, 700.0, 0.2, 640.0, 0.0)
     assert (p.width, p.height) == SIZES[:2]
     assert solved(p).depth_from_disparity == pytest.approx(solved(p).depth)
     assert SIM.paste is not None
-    assert "rectified rig: b is 0.200" in SIM.paste.says(p, calibration.read(text(parallel)))
+    assert "rectified rig: b is 0.200" in SIM.paste.says(p, calibration.read(text(parallel, **one_size)))
     for run in (calibration.middlebury, calibration.kitti, calibration.parallel):
         assert WANTED.changed(run(WANTED)).pair is None
     for other in (
         {"T": "-0.2, 0.05, 0"}, {"T": "0.2, 0, 0"}, {"K2": "700, 0, 640, 0, 700, 350, 0, 0, 1"},
-        {"K2": "710, 0, 640, 0, 700, 360, 0, 0, 1"},
+        {"K2": "710, 0, 640, 0, 700, 360, 0, 0, 1"}, {"imageSize2": "1920, 1080"},
     ):  # fmt: skip
-        assert taken(text(parallel, **other)).pair is not None, f"{other} isn't rectified"
+        assert taken(text(parallel, **one_size | other)).pair is not None, f"{other} isn't rectified"
 
 
 def test_of_more_cameras_the_pair_is_chosen_and_it_is_said() -> None:
@@ -441,6 +446,14 @@ def test_cameras_rays_and_pictures_are_drawn_where_they_stand(stage: Rig, p: Tri
     np.testing.assert_allclose(model.points("/baseline").reshape(-1, 3), centers, rtol=0, atol=1e-6)
     if s.point is not None:
         np.testing.assert_array_equal(model.world_pose(f"/{p.method}")[:3, 3], s.point)
+        assert f"depth {figure(s.depth, 2 if s.depth_sigma >= 0.005 else 4)}" in model.labels()["/result/label"]
+    if model.visible("/gap"):
+        np.testing.assert_allclose(model.points("/gap")[0], s.closest_points, rtol=1e-6, atol=1e-6)
+    if model.visible("/closeup"):
+        for side, (start, end) in zip(("left", "right"), model.points("/closeup/rays"), strict=False):
+            along = np.diff(model.points(f"/{side}/ray")[0], axis=0)[0]
+            crossed = np.cross((end - start) / np.linalg.norm(end - start), along / np.linalg.norm(along))
+            np.testing.assert_allclose(crossed, 0.0, atol=1e-4)
     if s.covariance is not None and model.visible("/uncertainty"):
         pose = model.world_pose("/uncertainty/ellipsoid")
         scaled = pose[:3, :3] @ np.diag(model.node("/uncertainty/ellipsoid").props["scale"]) / 3.0
