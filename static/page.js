@@ -36,6 +36,13 @@ full?.addEventListener("click", (event) => {
   frame.parentElement.requestFullscreen().catch(() => location.assign(full.href));
 });
 
+// What is wider than the page is scrolled by keys too, where it is. (A script's own box always can be.)
+const wide = new ResizeObserver((seen) => {
+  for (const { target } of seen) if (target.scrollWidth > target.clientWidth) target.tabIndex = 0;
+    else target.removeAttribute("tabindex");
+});
+for (const node of document.querySelectorAll(".words :is(table, math[display=block])")) wide.observe(node);
+
 for (const button of document.querySelectorAll("[data-copy]")) {
   button.hidden = false;
   button.addEventListener("click", () => copy(button));

@@ -200,8 +200,18 @@ def test_beside_a_lesson_the_sim_leaves_the_word_to_the_text(reader: Learner) ->
 
 
 def test_a_lesson_is_for_everybody(reader: Learner) -> None:
-    reader.page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
+    """Whatever it holds, and where its tables and formulas are wider than the page."""
+    unfold = "document.querySelectorAll('details').forEach((details) => (details.open = true))"
+    reader.page.evaluate(unfold)
     assert axe(reader.page) == []
+    opened(reader, "camera")
+    reader.page.set_viewport_size({"width": 390, "height": 780})
+    reader.page.evaluate(unfold)
+    table = reader.page.locator("#other-ways-to-flatten-the-world > table")
+    expect(table).to_have_attribute("tabindex", "0")
+    assert axe(reader.page) == []
+    reader.page.set_viewport_size(DESK)
+    expect(table).not_to_have_attribute("tabindex", "0")
 
 
 def test_a_frame_leads_through_the_steps(classroom: Classroom) -> None:
