@@ -59,7 +59,9 @@ class Learner {
 
   open(address) {
     const frame = document.querySelector(".frame");
-    const stage = new Stage(Object.assign(document.createElement("iframe"), { allow: "fullscreen; clipboard-write", title: "Your sim" }), {
+    const stage = new Stage(Object.assign(document.createElement("iframe"), {
+      allow: "fullscreen; clipboard-write", name: "sim3-class", title: "Your sim",
+    }), {
       "sim3:ready": () => this.teachers && this.show(),
       "sim3:state": (state) => this.take(state),
       "sim3:prediction": ({ box, value }) => this.guess(box, value),

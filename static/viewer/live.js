@@ -8,6 +8,7 @@ const KEPT = ["theme", "controls", "only"]; // of the page's options, on the way
 const PRESENT = `
   <p>Whoever opens this link sees what you do, live and from where you look. They change nothing.</p>
   <p class="s3-give"><input class="s3-link" data-link="watch" readonly aria-label="Link to watch"> <button type="button" data-copies="watch">Copy</button></p>
+  <p class="s3-code"><img alt="QR code of the link to watch" width="160" height="160"></p>
   <p data-count></p>
   <h3>Hand over</h3>
   <p data-with="off">Let somebody else steer this sim. You still can, and you take it back when you like.</p>
@@ -111,6 +112,8 @@ export class Live {
       if (target.dataset.lend) this.lend(target.dataset.lend === "on");
       if (target.dataset.copies) this.copy(this.box.querySelector(`[data-link=${target.dataset.copies}]`));
     });
+    const code = `${sim.place.split("/sims/")[0]}/qr?url=`;
+    this.box.querySelector(".s3-code img").src = code + encodeURIComponent(this.address.watched());
     this.fill();
   }
 

@@ -83,6 +83,7 @@ def test_a_class_from_its_link_to_its_end(classroom: Classroom) -> None:
 
     lesson = sim_of(ada).parent_frame
     assert lesson is not None
+    expect(lesson.locator(".neighbours a, .top a, .end a").filter(visible=True)).to_have_count(0)  # nothing leads away
     question = lesson.locator("[data-predict]").first
     question.locator(".choice").nth(1).click()
     question.get_by_role("button").click()

@@ -150,6 +150,7 @@ def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(cla
     dialog = teacher.frame.get_by_role("dialog", name="Present")
     watch_link = dialog.get_by_label("Link to watch").input_value()
     assert watch_link == teacher.watch_link
+    teacher.until(lambda: dialog.get_by_role("img").evaluate("(code) => code.naturalWidth > 0"))
 
     watcher = classroom.open_column(watch_link)
     expect(dialog.get_by_text("1 person is watching.")).to_be_visible()
