@@ -346,14 +346,13 @@ def test_only_the_api_is_open(http: httpx.Client, path: str) -> None:
     assert "access-control-allow-origin" not in http.get(path, headers=ELSEWHERE).headers
 
 
-def test_what_fails_on_the_server_is_said_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    with Local() as local:
-        monkeypatch.setattr(api, "strict", lambda *_: 1 / 0)
-        answer = local.http.post("/api/sims/camera/solve", json={}, headers=ELSEWHERE)
-        assert (answer.status_code, answer.headers["access-control-allow-origin"]) == (500, "*")
-        assert "log" in strict(answer)["detail"]
-        wait_for(lambda: any("ZeroDivisionError" in problem for problem in local.problems), "a line in the log")
-        local.problems.clear()
+def test_what_fails_on_the_server_is_said_too(local: Local, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(api, "strict", lambda *_: 1 / 0)
+    answer = local.http.post("/api/sims/camera/solve", json={}, headers=ELSEWHERE)
+    assert (answer.status_code, answer.headers["access-control-allow-origin"]) == (500, "*")
+    assert "log" in strict(answer)["detail"]
+    wait_for(lambda: any("ZeroDivisionError" in problem for problem in local.problems), "a line in the log")
+    local.problems.clear()
 
 
 # ---- what a solution is
