@@ -156,8 +156,10 @@ def test_a_finger_scrolls_the_course_page_past_a_frame_until_the_scene_is_tapped
         learner.until(lambda: learner.page.evaluate("scrollY") > 60)
         np.testing.assert_allclose(learner.sockets.camera["position"], camera, atol=1e-9)
         learner.frame.get_by_text("Tap the scene to turn it").wait_for()
+        assert learner.params["pitch"] == 20, "what the finger passes isn't held"
 
         learner.page.wait_for_timeout(500)  # it glides on
+        x = at["x"] + 16  # beside the aircraft
         scrolled = learner.page.evaluate("scrollY")
         touch(learner, (x, 200))
         learner.until(lambda: learner.frame.locator(".s3-scene[data-shared]").count() == 0)
