@@ -10,6 +10,12 @@ from tests.e2e.learner import Learner
 from tests.e2e.test_accessibility import axe
 
 DESK = ViewportSize(width=1280, height=800)
+BACK_AND_FORTH = """async (steps) => {
+    for (const step of steps) {
+        document.getElementById(step).scrollIntoView({ behavior: "instant" });
+        for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+    }
+}"""
 FILLED = """async (given) => {
     const main = document.querySelector("script[src$='/main.js']").src;
     return (await import(main.replace("main.js", "spelling.js"))).filled(...given);
@@ -64,6 +70,7 @@ def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: L
     read(reader, "the-last-degree")
     state(reader, pitch=89, yaw=0)
     expect(show).to_be_hidden()
+    page.evaluate(BACK_AND_FORTH, ["the-other-end", "the-last-degree"])  # before the sim is there
     reader.frame.locator("[data-slide=yaw]").press("ArrowRight")
     state(reader, pitch=89, yaw=1)
     expect(show).to_be_visible()
