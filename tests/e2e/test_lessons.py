@@ -206,6 +206,19 @@ def test_beside_a_lesson_the_sim_leaves_the_word_to_the_text(reader: Learner) ->
     expect(caption).to_be_visible()
 
 
+def test_a_symbol_points_as_long_as_it_is_pointed_at(reader: Learner) -> None:
+    """Also where a glide has lit the same, and would put it out."""
+    lit = reader.frame.locator(".s3-control.s3-highlighted[data-control=pitch]")
+    set_ = {"type": "sim3:set", "params": {"pitch": 12}, "seconds": 0.01}
+    reader.page.evaluate("(set) => document.querySelector('iframe').contentWindow.postMessage(set)", set_)
+    expect(lit).to_be_visible()
+    reader.page.locator("[data-point=pitch]").first.focus()
+    reader.page.wait_for_timeout(1000)
+    expect(lit).to_be_visible()
+    reader.page.locator("[data-point=pitch]").first.blur()
+    expect(lit).to_be_hidden()
+
+
 def test_a_lesson_is_for_everybody(reader: Learner) -> None:
     """Whatever it holds, and where its tables and formulas are wider than the page."""
     unfold = "document.querySelectorAll('details').forEach((details) => (details.open = true))"
