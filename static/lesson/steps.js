@@ -31,7 +31,7 @@ export class Steps {
 
   hear({ params, query }) {
     this.query = query;
-    if (query === this.step?.query) this.reached();
+    if (query === this.step?.query) this.taken = false;
     if (this.taken) this.mine = { params, query };
     this.offer();
   }
@@ -51,14 +51,14 @@ export class Steps {
     if (k === this.at) return;
     this.at = k;
     for (const [i, { node }] of this.steps.entries()) node.classList.toggle("current", i === k);
-    if (this.query === this.step.query) this.reached();
+    if (this.query === this.step.query && !this.moving) this.taken = false;
     else if (!this.taken) this.go(this.step, GLIDE);
     this.offer();
   }
 
-  reached() {
-    this.taken = false;
-    this.shown = this.step;
+  // On its way to what the text has shown last.
+  get moving() {
+    return !this.taken && this.shown !== null && this.shown.query !== this.query;
   }
 
   go(state, seconds) {
@@ -70,7 +70,8 @@ export class Steps {
   // "Show this" where the sim is elsewhere, by somebody's hand or after a question or a link, and the way back to what
   // somebody had.
   offer() {
-    const away = this.query !== this.step?.query && (this.taken || this.shown !== this.step);
+    const { query, shown, step, taken } = this;
+    const away = query !== step?.query && (taken || (shown !== null && shown.query !== step?.query));
     for (const button of document.querySelectorAll("[data-show], [data-mine]")) {
       const here = this.step?.node.contains(button);
       const offered = "show" in button.dataset ? away : !this.taken && this.mine;

@@ -48,6 +48,7 @@ export class Highlight {
 
   // What the page around the sim points at.
   point(name) {
+    clearTimeout(this.brief);
     this.mine = name;
     this.show();
     this.channel.send({ type: "point", name });
@@ -58,7 +59,8 @@ export class Highlight {
     const node = column.querySelector(`[data-control="${CSS.escape(control)}"]`);
     if (!node) return;
     this.hover(node);
-    setTimeout(() => this.mine === node.dataset.link?.split(" ")[0] && this.hover(null), seconds * 1000 + 800);
+    clearTimeout(this.brief);
+    this.brief = setTimeout(() => this.mine === node.dataset.link?.split(" ")[0] && this.hover(null), seconds * 1000 + 800);
   }
 
   letGo() {

@@ -10,6 +10,12 @@ from tests.e2e.learner import Learner
 from tests.e2e.test_accessibility import axe
 
 DESK = ViewportSize(width=1280, height=800)
+BACK_AND_FORTH = """async (steps) => {
+    for (const step of steps) {
+        document.getElementById(step).scrollIntoView({ behavior: "instant" });
+        for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+    }
+}"""
 FILLED = """async (given) => {
     const main = document.querySelector("script[src$='/main.js']").src;
     return (await import(main.replace("main.js", "spelling.js"))).filled(...given);
@@ -64,6 +70,7 @@ def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: L
     read(reader, "the-last-degree")
     state(reader, pitch=89, yaw=0)
     expect(show).to_be_hidden()
+    page.evaluate(BACK_AND_FORTH, ["the-other-end", "the-last-degree"])  # before the sim is there
     reader.frame.locator("[data-slide=yaw]").press("ArrowRight")
     state(reader, pitch=89, yaw=1)
     expect(show).to_be_visible()
@@ -197,6 +204,19 @@ def test_beside_a_lesson_the_sim_leaves_the_word_to_the_text(reader: Learner) ->
     expect(reader.frame.locator(".s3-lamps")).to_be_in_viewport()
     reader.press("Try to turn about the lost axis")
     expect(caption).to_be_visible()
+
+
+def test_a_symbol_points_as_long_as_it_is_pointed_at(reader: Learner) -> None:
+    """Also where a glide has lit the same, and would put it out."""
+    lit = reader.frame.locator(".s3-control.s3-highlighted[data-control=pitch]")
+    set_ = {"type": "sim3:set", "params": {"pitch": 12}, "seconds": 0.01}
+    reader.page.evaluate("(set) => document.querySelector('iframe').contentWindow.postMessage(set)", set_)
+    expect(lit).to_be_visible()
+    reader.page.locator("[data-point=pitch]").first.focus()
+    reader.page.wait_for_timeout(1000)
+    expect(lit).to_be_visible()
+    reader.page.locator("[data-point=pitch]").first.blur()
+    expect(lit).to_be_hidden()
 
 
 def test_a_lesson_is_for_everybody(reader: Learner) -> None:
