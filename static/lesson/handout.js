@@ -27,7 +27,15 @@ export class Handout {
       this.status.textContent = "Without pictures of the steps: the sim didn’t answer.";
     }
     this.button.disabled = false;
+    this.print();
+  }
+
+  // A sandboxed frame may not print unless it is allowed to, and isn't told.
+  print() {
+    let begun = false;
+    addEventListener("beforeprint", () => (begun = true), { once: true });
     print();
+    if (!begun && self.origin === "null") this.status.textContent = "The page around doesn’t let this one print: open it in a tab of its own.";
   }
 
   async illustrate() {

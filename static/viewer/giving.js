@@ -1,6 +1,9 @@
 // Gives a person a text or a file.
 import { element } from "./page.js";
 
+// A frame that is sandboxed may not save files unless it is allowed to, and isn't told.
+export const doubt = self.origin === "null" ? "If nothing is saved, the page around doesn’t allow it: open the sim in a tab of its own." : "";
+
 // Copies a text; whether that was allowed is what is returned.
 export async function copied(text) {
   try {

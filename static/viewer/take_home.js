@@ -1,6 +1,6 @@
 // The dialog in which a sim is taken home: its present state, or a sweep of one number, as one file.
 import { dialog } from "./dialog.js";
-import { download } from "./giving.js";
+import { doubt, download } from "./giving.js";
 import { element, Query, sim } from "./page.js";
 
 const FORM = `<p>One file that opens from a memory stick, without server and network. In it, the scene can be turned.</p>
@@ -58,7 +58,7 @@ export class TakeHome {
       const href = URL.createObjectURL(await answer.blob());
       download(href, name);
       setTimeout(() => URL.revokeObjectURL(href), 60_000);
-      this.said.textContent = `Saved as ${name}.`;
+      this.said.textContent = `Saved as ${name}. ${doubt}`;
     });
     button.disabled = false;
   }

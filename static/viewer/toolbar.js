@@ -1,6 +1,6 @@
 // The buttons that every sim has: share, save the picture, keys, downloads.
 import { dialog } from "./dialog.js";
-import { copied, download } from "./giving.js";
+import { copied, doubt, download } from "./giving.js";
 import { column, sim } from "./page.js";
 import { TakeHome } from "./take_home.js";
 import { sceneCanvas } from "./viser_dom.js";
@@ -14,12 +14,12 @@ export class Toolbar {
       share: (button) => this.share(button),
       code: () => this.copyCode(),
       copy: (button) => this.copy(button.value, "Copied.", button.ariaLabel),
-      picture: savePicture,
+      picture: () => this.give(savePicture),
       "take-home": () => this.takeHome.open(),
       present: () => live.present(),
       keys: showKeys,
       more: unfold,
-      download: (button) => download(`${sim.place}result/${button.value}`, button.value),
+      download: ({ value }) => this.give(() => download(`${sim.place}result/${value}`, value)),
       enlarge: (button) => enlarge(button.closest("figure")),
       home: () => view.look("home"),
       "give-up": () => files.giveUp(),
@@ -44,6 +44,11 @@ export class Toolbar {
     } catch {
       this.copy(this.address.link("embed"), "Link copied. It opens this sim in exactly this state and view.", "Link to this state");
     }
+  }
+
+  give(saves) {
+    saves();
+    if (doubt) this.words.notify(doubt);
   }
 
   async copy(words, done, title) {

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
+import json
 from collections.abc import Iterator
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from starlette.websockets import WebSocket
 
 from app.rooms import telling
+from app.sockets.outgoing import MOST_WAITING, Outgoing
 from sims.kit.scene.view import FIELD
 from tests.app.conftest import Local
 from tests.app.page import Page, closed, connect
@@ -256,3 +260,28 @@ def test_a_longer_ticket_is_nonsense(local: Local, room: Room) -> None:
     channel = connect(f"{room.teacher.address}channel?viewer=0123456789", viser=False)
     channel.send('{"type": "hello", "dark": false, "reduced": false, "query": "", "ticket": "%s"}' % ("0" * 61))
     assert closed(channel) == 1008
+
+
+def test_of_the_viewpoints_that_wait_for_a_slow_page_the_newest_is_sent() -> None:
+    sent: list[dict[str, Any]] = []
+
+    class Page:
+        async def send_text(self, text: str) -> None:
+            sent.append(json.loads(text))
+
+    async def told() -> None:
+        outgoing = Outgoing(cast("WebSocket", Page()))
+        for k in range(2 * MOST_WAITING):
+            outgoing.put({"type": "led", "view": [k]})
+            outgoing.put({"type": "show", "version": k, "values": {f"{k}": k}, "parts": {}})
+        outgoing.put({"type": "point", "name": ""})
+        sending = asyncio.create_task(outgoing.send())
+        while len(sent) < 3:
+            await asyncio.sleep(0)
+        sending.cancel()
+
+    asyncio.run(told())
+    led, show, point = sent
+    assert led["view"] == [2 * MOST_WAITING - 1]
+    assert len(show["values"]) == 2 * MOST_WAITING, "nothing of what is to show is lost"
+    assert point["type"] == "point"

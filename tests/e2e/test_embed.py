@@ -116,6 +116,9 @@ def test_a_sandboxed_frame_works_too(classroom: Classroom, course: CourseSite) -
     learner.until(lambda: learner.frame.evaluate("document.activeElement.textContent === 'Share'"))
     learner.press_keys("baseline", "Home")
     learner.sees(baseline=0.05)
+    learner.witness.expect("Download is disallowed")
+    learner.press("Save picture")
+    learner.says("the page around doesn’t allow it")
 
 
 def test_a_bad_link_in_a_frame_tells_the_page(classroom: Classroom, course: CourseSite) -> None:

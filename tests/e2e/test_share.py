@@ -20,6 +20,8 @@ new PerformanceObserver((list) => list.getEntries().forEach((e) => (window.shift
     .observe({ type: "layout-shift", buffered: true });"""
 """What is laid out before anything is painted, as Chromium does with a frame whose style is still on its way, is seen by
 nobody."""
+PRINTING = """import(document.querySelector("script[src$='/main.js']").src.replace("main.js", "handout.js"))
+    .then(({ Handout }) => new Handout({ steps: [], embed: "" }).print())"""
 SANDBOX = 'sandbox="allow-scripts"'
 
 
@@ -129,6 +131,10 @@ def test_a_lesson_in_a_frame_moves_its_sim_and_takes_answers(
     predict.locator(".choice").first.click()
     predict.get_by_role("button").click()
     learner.until(lambda: predict.get_attribute("data-answered") in ("right", "wrong"))
+    if sandbox:
+        learner.witness.expect("Ignored call to 'print()'")
+        frame.evaluate(PRINTING)
+        frame.locator("[data-handout-status]").get_by_text("open it in a tab of its own").wait_for()
 
 
 def test_a_class_in_a_frame_is_joined_and_one_that_cant_be_opened_there_says_so(
