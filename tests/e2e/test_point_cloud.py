@@ -136,6 +136,7 @@ def test_a_learner_brings_a_file_and_takes_it_home(classroom: Classroom, tmp_pat
     np.testing.assert_allclose(learner.scene.points("/cloud/points"), points, atol=1e-6)
     assert "my scan.ply" in learner.sockets.column.html("read")
     with learner.page.expect_download() as download:
+        learner.frame.get_by_role("button", name="More").click()
         learner.frame.get_by_role("button", name="Download").click()
     np.testing.assert_array_equal(read("a.ply", download.value.path().read_bytes(), 10**6).points, points)
     assert other.params["dataset"] == "room"
