@@ -50,6 +50,15 @@ def test_no_rule_says_a_property_twice(sheet: Path) -> None:
 
 
 @each_sheet
+def test_a_selector_has_one_rule(sheet: Path) -> None:
+    """Two things of one name would take each other's looks."""
+    text = sheet.read_text(encoding="utf-8")
+    rules = tinycss2.parse_stylesheet(text, skip_comments=True, skip_whitespace=True)
+    selectors = Counter(tinycss2.serialize(rule.prelude).strip() for rule in rules if rule.type == "qualified-rule")
+    assert not [selector for selector, n in selectors.items() if n > 1]
+
+
+@each_sheet
 def test_every_variable_is_set_somewhere(sheet: Path) -> None:
     scripts = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "static").rglob("*.js"))
     known = {x.name for path in SHEETS for block in parsed(path) for x in block if x.type == "declaration"}

@@ -36,7 +36,7 @@ class Strip:
         whole = self.stage is None and len(self.individual) <= OPEN
         cards = "".join(self._card(i, whole) for i in range(1, len(self.individual) + 1))
         every = _radio("", "All transforms", self.stage is None) + "<span>All</span>"
-        kind = "s3-strip s3-open" if whole else "s3-strip"
+        kind = "s3-stages s3-open" if whole else "s3-stages"
         return (
             f'<div class="{kind}" role="group" aria-label="Transforms: show one alone, or all">{cards}'
             f'<label class="s3-stage">{every}</label></div>'

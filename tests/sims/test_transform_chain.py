@@ -471,7 +471,7 @@ def test_the_strip_stands_first_and_shows_each_factor_and_the_product_so_far(rig
     s = solve(START)
     strip = xml(rig.column.parts["read:"])[0]
     cards = strip.findall("label")
-    assert strip.get("class") == "s3-strip s3-open"
+    assert strip.get("class") == "s3-stages s3-open"
     assert [card.find("input").get("value") for card in cards] == ["1", "2", "3", ""]  # type: ignore[union-attr]
     for k, card in enumerate(cards[:3]):
         shown = [float(cell.text.replace("−", "-")) for cell in card.iter("mn") if cell.text]
@@ -485,7 +485,7 @@ def test_the_strip_stands_first_and_shows_each_factor_and_the_product_so_far(rig
 
 def test_where_nothing_can_be_chosen_the_strip_has_no_buttons() -> None:
     html = readout.still(SIM.readouts(START, solve(START)))
-    assert "s3-strip" in html
+    assert "s3-stages" in html
     assert "<input" not in html
 
 
