@@ -31,6 +31,13 @@ def link() -> trimesh.Trimesh:
     return joined([_rail(side) for side in (-1.0, 1.0)])
 
 
+@lru_cache(maxsize=1)
+def grasp() -> trimesh.Trimesh:
+    """What a hand takes of a link: both rails, and what is between them."""
+    hull: trimesh.Trimesh = link().convex_hull
+    return hull
+
+
 def _rail(side: float) -> trimesh.Trimesh:
     corners = [
         (x, y * width, side * height + z * thick)

@@ -62,7 +62,8 @@ class Arm:
         while len(self.grips) < len(places):
             k, name = len(self.grips), f"/turn{len(self.grips) + 1}"
             self.grips.append(self._stage.grip(name, 0.024, halo=2.0))
-            self._stage.turned_by(self.links[k].body, name, self.grips[k], partial(self._line, k))
+            if (grasp := self.links[k].grasp) is not None:
+                self._stage.turned_by(grasp, name, self.grips[k], partial(self._line, k))
         for k, grip in enumerate(self.grips):
             grip.place(places[k] if k < len(places) else None)
             grip.scale(size)
@@ -97,6 +98,7 @@ class Link:
         self.post = stage.mesh(f"{parent}/joint{number}/post", meshes.post(), solid, opacity=opacity)
         self.node = stage.group(path)
         self.body = stage.mesh(f"{path}/body", meshes.link(), solid, opacity=opacity, flat=True)
+        self.grasp = stage.mesh(f"{path}/grasp", meshes.grasp(), solid, opacity=0.0) if not ghost else None
         self.arrow = stage.arrows(f"{path}/arrow", "ink", radius=meshes.ARROW) if not ghost else None
         self.frame = frame(stage, f"{path}/frame") if not ghost else None
         self.marks = [node for node in (self.arrow, self.frame) if node is not None]
@@ -107,9 +109,11 @@ class Link:
         self._draw_post(joint, girth, size)
         taken = meshes.GRIPPER * size if hand else 0.0
         length = abs(joint.length) - taken
-        self.body.show(length > SHORTEST)
-        self.body.pose(UPRIGHT if joint.length > 0.0 else ABOUT, (-math.copysign(taken, joint.length), 0.0, 0.0))
-        self.body.scale((max(length, SHORTEST), girth, girth))
+        for body in (self.body, self.grasp):
+            if body is not None:
+                body.show(length > SHORTEST)
+                body.pose(UPRIGHT if joint.length > 0.0 else ABOUT, (-math.copysign(taken, joint.length), 0.0, 0.0))
+                body.scale((max(length, SHORTEST), girth, girth))
         if self.arrow is not None and self.frame is not None:
             self.joint.color(self._palette.solid if joint.kind == "f" else self._palette.surface(joint.axis))
             self.arrow.thickness(meshes.ARROW * size)

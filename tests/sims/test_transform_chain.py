@@ -583,7 +583,7 @@ def test_a_joint_is_led_round_and_round_without_a_jump(rig: Rig) -> None:
 def test_a_link_turns_wherever_it_is_taken(rig: Rig, k: int) -> None:
     """About its joint, by as much as the place that was taken goes round."""
     rig.show(START)
-    body = "".join(f"/link{n}" for n in range(1, k + 2)) + "/body"
+    body = "".join(f"/link{n}" for n in range(1, k + 2)) + "/grasp"
     joint, normal = solve(START).lines[k] or ((), ())
     eye = np.asarray(rig.browser.client.camera.position)
     places = rig.model.points(body)
