@@ -59,7 +59,7 @@ def main() -> None:
     host.stop()
     if not server.started:
         raise SystemExit(f"Sim3 can't listen on {settings.host}:{settings.port}; is the port taken? Set SIM3_PORT.")
-    # Threads that still solve or read lessons work for nobody, and Python would wait for them, be it for a minute.
+    # Threads that still solve or read files work for nobody, and Python would wait for them, be it for a minute.
     logging.shutdown()
     sys.stdout.flush()
     os._exit(0)

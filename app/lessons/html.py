@@ -200,9 +200,10 @@ class Writer:
 
     def _said_of(self, state: State, tokens: Sequence[Token]) -> str:
         before, self._state, self._live = self._state, state, False
-        html = self._plain(tokens)
-        self._state, self._live = before, True
-        return html
+        try:
+            return self._plain(tokens)
+        finally:
+            self._state, self._live = before, True
 
     def _state_of(self, query: str) -> State:
         try:

@@ -47,18 +47,28 @@ class Lesson:
         self._writing = writer.sections(written.tokens)
         self._written: list[Section] = []
         self._turn = Lock()  # of several who read it at once, one writes
+        self._failed: Exception | None = None  # a fault of ours, on which the writing ended
 
     def each(self) -> Iterator[Section]:
         """Its sections in order, as soon as each is written."""
         for k in count():
             with self._turn:
+                if self._failed is not None:
+                    raise self._failed
                 if k == len(self._written):
-                    self._written += islice(self._writing, 1)
+                    self._write_one()
             if k == len(self._written):
                 break
             yield self._written[k]
         if self._writer.mistakes:
             raise LessonError(self._file, self._writer.mistakes)
+
+    def _write_one(self) -> None:
+        try:
+            self._written += islice(self._writing, 1)
+        except Exception as error:
+            self._failed = error
+            raise
 
     def finished(self) -> Self:
         """The lesson itself, all of it written. Raises LessonError with all that is wrong with it."""

@@ -171,9 +171,9 @@ class Sessions:
             self._sweeping.cancel()
         working = [task for session in self._by_room.values() for task in session.end()]
         await asyncio.gather(*working, return_exceptions=True)
-        child.stop()
         self._closed = True
-        self.aside.shutdown(wait=False, cancel_futures=True)
-        # A piece that has begun is waited for here: the interpreter would wait as well, but refuse it its threads.
+        # What was begun ahead ends at the next state that it comes to, and uses until then what is closed below.
         await asyncio.to_thread(self._ahead.shutdown, cancel_futures=True)
+        child.stop()
+        self.aside.shutdown(wait=False, cancel_futures=True)
         self._solver.close()

@@ -158,11 +158,17 @@ def _file(request: Request, files: Mapping[str, bytes], name: str, *, known: boo
     if not known or name not in files:
         raise HTTPException(404, "There is no such file.")
     data, headers = files[name], {**FOR_EVER, "vary": "accept-encoding"}
-    accepted = {each.partition(";")[0].strip() for each in request.headers.get("accept-encoding", "").split(",")}
-    if coding := next((each for each in rendering.COMPRESSIONS if each in accepted), None):
+    accepted = request.headers.get("accept-encoding", "")
+    if coding := next((each for each in rendering.COMPRESSIONS if _takes(accepted, each)), None):
         data, headers["content-encoding"] = rendering.compressed(data, coding), coding
     kind = "text/css" if name.endswith(".css") else "text/javascript"
     return Response(data, media_type=kind, headers=headers)
+
+
+def _takes(accepted: str, coding: str) -> bool:
+    """Whether a header names a coding, with another weight than zero."""
+    given = (each.partition(";q=") for each in accepted.replace(" ", "").split(","))
+    return any(name == coding and (not weight or bool(weight.strip("0."))) for name, _, weight in given)
 
 
 # Without the host, as Starlette's own redirects of this kind have it: a proxy in front may have another.

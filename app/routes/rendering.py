@@ -131,9 +131,13 @@ def viewer(
 
 
 COMPRESSIONS: dict[str, Callable[[bytes], bytes]] = {
-    "zstd": zstandard.ZstdCompressor(level=19).compress, "gzip": functools.partial(gzip.compress, compresslevel=9),
+    "zstd": zstandard.ZstdCompressor(level=12).compress, "gzip": functools.partial(gzip.compress, compresslevel=9),
 }  # fmt: skip
-"""For files that never change, the best first: zstd makes viser's client a fifth smaller; browsers take it over TLS."""
+"""For files that never change, the best first; browsers take zstd over TLS.
+
+Of viser's client it leaves 652 kB where gzip leaves 763, in 0.16 s, for which all rooms wait once; level 19 would leave
+613, and take over a second.
+"""
 
 
 @functools.cache

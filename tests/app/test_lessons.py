@@ -17,6 +17,7 @@ from markupsafe import Markup
 
 from app.lessons.concepts import CONCEPTS
 from app.lessons.errors import LessonError
+from app.lessons.html import Writer
 from app.lessons.lesson import Lesson, begun, load
 from app.lessons.shelf import Shelf, place
 from app.lessons.state import read
@@ -486,3 +487,14 @@ def test_a_mistake_of_the_documentation_is_said_as_there(written: Callable[..., 
 def test_the_documentation_has_examples_and_messages() -> None:
     assert len(EXAMPLES) > 8
     assert len(MESSAGES) > 15
+
+
+def test_a_fault_of_ours_is_no_end_of_a_lesson(monkeypatch: pytest.MonkeyPatch) -> None:
+    sim = by_slug("gimbal-lock")
+    assert sim is not None
+    lesson = Shelf(SIMS, given).begun(sim)
+    assert lesson is not None
+    monkeypatch.setattr(Writer, "_said_of", lambda *_: 1 / 0)
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError):
+            lesson.finished()

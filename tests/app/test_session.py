@@ -1143,7 +1143,7 @@ def test_work_ahead_is_done_once_after_the_first_drawing() -> None:
 
 
 def test_work_ahead_ends_with_the_server() -> None:
-    """Python would wait for it, at the end of the process too."""
+    """What is closed is waited for: it ends at its next state."""
     begun, ended = threading.Event(), threading.Event()
 
     def piece() -> None:

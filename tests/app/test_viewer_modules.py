@@ -38,7 +38,13 @@ def test_no_script_is_kept_under_a_wrong_fingerprint(http: httpx.Client) -> None
 
 @pytest.mark.parametrize(
     ("accepted", "coding"),
-    [("gzip, deflate, br, zstd", "zstd"), ("gzip, deflate", "gzip"), ("gzip;q=0.5, *;q=0", "gzip"), ("identity", None)],
+    [
+        ("gzip, deflate, br, zstd", "zstd"),
+        ("gzip, deflate", "gzip"),
+        ("zstd;q=0, gzip; q=0.5", "gzip"),
+        ("identity", None),
+        ("zstd;q=0.0", None),
+    ],
 )
 def test_what_never_changes_comes_as_small_as_the_browser_can_read_it(
     http: httpx.Client, accepted: str, coding: str | None
