@@ -9,7 +9,7 @@ const LOADING = 1500; // milliseconds for which a new scene is drawn as viser do
 const COARSER = 0.75; // of the resolution, where a machine needs more than SLOW milliseconds for half of its frames
 const SLOW = 40;
 const QUICK = 20; // milliseconds with which it gets the whole one back; a coarser frame has half the pixels
-const SAMPLES = 16; // frames between two such decisions
+const SAMPLES = 8; // changes between two such decisions
 let viewer = null; // viser's own state, once it is there
 let eye = null; // what viser's camera last said of itself
 
@@ -100,18 +100,22 @@ function adopt(looked) {
   });
 }
 
-// viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. Two frames show
-// a change, and one more, when nothing has changed for a while, what comes late.
+// viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. One frame shows a
+// change (React asks for another by itself where it has something to add), and one more, when nothing has changed for a
+// while, what comes late.
 function drawLess(mutable, drawn) {
   const whole = mutable.requestRender;
   let late = 0;
-  const frames = (count) => mutable.scene.__r3f.root.getState().invalidate(count);
+  const frames = (count) => {
+    const { internal, invalidate } = mutable.scene.__r3f.root.getState();
+    if (internal.frames < count) invalidate(count); // what is asked for comes on top of what is still to be drawn
+  };
   const draw = () => {
     if (!sim.liveAt || performance.now() < sim.liveAt + LOADING) {
       whole();
       return;
     }
-    frames(2);
+    frames(1);
     requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
     clearTimeout(late);
     late = setTimeout(() => frames(1), SETTLED);

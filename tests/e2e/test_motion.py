@@ -66,14 +66,14 @@ def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
 RESOLUTIONS = """(times) => {
     const root = { viewport: { dpr: 1 }, size: [] };
     root.setDpr = (dpr) => { root.viewport = { dpr }; };
-    const store = { getState: () => ({ ...root, invalidate() {} }), subscribe(heard) { store.heard = heard; } };
+    const store = { getState: () => ({ ...root, internal: { frames: 0 }, invalidate() {} }), subscribe(heard) { store.heard = heard; } };
     window.__viserMutable = { scene: { __r3f: { root: store } } };
     sim3.liveAt = 1 - 2000;
     const ask = window.requestAnimationFrame;
     const found = times.map((took) => {
         let now = 0;
         window.requestAnimationFrame = (draw) => draw(now += took);
-        for (let k = 0; k < 16; k++) window.__viserMutable.requestRender();
+        for (let k = 0; k < 8; k++) window.__viserMutable.requestRender();
         return root.viewport.dpr;
     });
     window.requestAnimationFrame = ask;
