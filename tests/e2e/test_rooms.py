@@ -55,6 +55,16 @@ LED = """async ([told, letGo]) => {
   return { seen: seen.length ? seen : [lead.at], gliding: lead.gliding, reduced: matches };
 }"""
 
+# The application's address under a path that is called as the one of its sims.
+SITE = """async () => {
+  const { Address } = await import(sim3.main.replace("main.js", "address.js"));
+  const { place } = sim3;
+  sim3.place = place.replace("/sims/", "/sims/sims/");
+  const { site } = new Address();
+  sim3.place = place;
+  return site.replace(new URL(place).origin, "");
+}"""
+
 
 def same_scene(a: Learner, b: Learner) -> None:
     """Both browsers received the same scene (not the same panel: a watcher's is disabled)."""
@@ -151,6 +161,7 @@ def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(cla
     watch_link = dialog.get_by_label("Link to watch").input_value()
     assert watch_link == teacher.watch_link
     teacher.until(lambda: dialog.get_by_role("img").evaluate("(code) => code.naturalWidth > 0"))
+    assert teacher.frame.evaluate(SITE) == "/sims"
 
     watcher = classroom.open_column(watch_link)
     expect(dialog.get_by_text("1 person is watching.")).to_be_visible()
