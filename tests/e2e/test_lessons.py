@@ -16,6 +16,18 @@ BACK_AND_FORTH = """async (steps) => {
         for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
     }
 }"""
+# From now on `passes()` does at once what a page waits for.
+NOTED = """() => {
+    const [wait, stop, noted] = [setTimeout, clearTimeout, new Map()];
+    window.setTimeout = (does, after) => {
+        const once = () => noted.delete(id) && does();
+        const id = wait(once, after);
+        noted.set(id, once);
+        return id;
+    };
+    window.clearTimeout = (id) => { noted.delete(id); stop(id); };
+    window.passes = () => { for (const once of [...noted.values()]) once(); };
+}"""
 FILLED = """async (given) => {
     const main = document.querySelector("script[src$='/main.js']").src;
     return (await import(main.replace("main.js", "spelling.js"))).filled(...given);
@@ -216,10 +228,11 @@ def test_a_symbol_points_as_long_as_it_is_pointed_at(reader: Learner) -> None:
     """Also where a glide has lit the same, and would put it out."""
     lit = reader.frame.locator(".s3-control.s3-highlighted[data-control=pitch]")
     set_ = {"type": "sim3:set", "params": {"pitch": 12}, "seconds": 0.01}
+    reader.frame.evaluate(NOTED)
     reader.page.evaluate("(set) => document.querySelector('iframe').contentWindow.postMessage(set)", set_)
     expect(lit).to_be_visible()
     reader.page.locator("[data-point=pitch]").first.focus()
-    reader.page.wait_for_timeout(1000)
+    reader.frame.evaluate("passes()")
     expect(lit).to_be_visible()
     reader.page.locator("[data-point=pitch]").first.blur()
     expect(lit).to_be_hidden()
