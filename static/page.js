@@ -73,14 +73,20 @@ document.addEventListener("click", ({ target }) => {
   setTimeout(() => told || sendAnyway(button));
 });
 
+const unsent = Object.assign(document.createElement("p"), { role: "alert", className: "wrong" });
+
 function sendAnyway(button) {
   const { form } = button;
   if (!form.reportValidity()) return;
   if (!form.dispatchEvent(new SubmitEvent("submit", { bubbles: true, cancelable: true, submitter: button }))) return;
-  if (form.method === "get") location.assign(`${form.action}?${new URLSearchParams(new FormData(form))}`);
-  else button.after(Object.assign(document.createElement("p"), {
-    role: "alert", className: "wrong", textContent: `The page around this one doesn’t let it send anything. Open ${location.href} in a tab of its own.`,
-  }));
+  if (form.method === "get") {
+    const address = new URL(form.action);
+    address.search = new URLSearchParams(new FormData(form, button)); // in place of a query of its own, as browsers do
+    location.assign(address);
+    return;
+  }
+  unsent.textContent = `The page around this one doesn’t let it send anything. Open ${location.href} in a tab of its own.`;
+  button.after(unsent);
 }
 
 // The dialog of what a state is handed on by; without it the link leads to the same as a page.

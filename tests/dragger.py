@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import secrets
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 from time import perf_counter
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -14,9 +16,11 @@ from websockets.exceptions import WebSocketException
 
 from app.rooms.keys import new_key, room_of
 
-FIRST, LAST = 0.25, 1.5
+CHANNEL = Path(__file__).parent.parent / "static/viewer/channel.js"
+SAID = {name: int(ms) / 1000 for name, ms in re.findall(r"(?m)^const (\w+) = (\d+);", CHANNEL.read_text("utf-8"))}
+FIRST, LAST = SAID["FIRST"], SAID["LAST"]
 """Seconds until the page tries again: at first, and in the end; each time twice as long."""
-TOLD = 1.0
+TOLD = SAID["TOLD"]
 """Seconds within which the page holds the state that has what was put in."""
 SHOWN_WITHIN = 10.0
 OPTIONS = {"compression": None, "max_size": None, "ping_interval": None, "open_timeout": 5, "proxy": None}

@@ -137,7 +137,8 @@ class ChannelSockets:
             session = await self._greet(inbox, visit)
             session.listen(tell)
             session.audience.enter(visit)
-            tell({**session.state(), "room": visit.room, "watching": visit.watching})
+            answer = {"room": visit.room, "watching": visit.watching, "begins": visit.begins}
+            tell({**session.state(), **answer})
             conversation = Conversation(session, visit)
             while True:
                 self._hear(await inbox.next(), conversation, visit)
@@ -160,6 +161,8 @@ class ChannelSockets:
         """Take the page's first message; a room that isn't running goes on from the state that the page holds."""
         hello = await self._strangers.greeting(inbox, Hello, GREETED_WITHIN)
         visit.ticket, visit.follows = hello.ticket, hello.follows
+        running = self._sessions.find(visit.sim, visit.room)
+        visit.begins = visit.keyed and (running is None or running.waiting)
         session = self._open(visit, *((hello.query, hello.opened) if visit.keyed else ("", "")))
         session.motion.reduced = session.motion.reduced or hello.reduced
         if not visit.hello.done():

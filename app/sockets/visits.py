@@ -53,6 +53,8 @@ class Visit:
     """It may only watch."""
     follows: bool = True
     """It lets its viewpoint be led."""
+    begins: bool = False
+    """The room began with the state that it holds: nobody with control was there before."""
     sockets: set[WebSocket] = field(default_factory=set)
     viewer: Viewer | None = None
     seen: Seen | None = None

@@ -13,3 +13,7 @@ const parts = [new Values(sim), new Answers(sim, steps), new Handout(data), new 
 for (const part of parts) part.begin();
 steps.begin(data.query);
 sim.begin();
+
+// From here on the answers can be opened, whatever went wrong on the way (sim.html).
+window.onerror = null;
+document.documentElement.classList.add("live");

@@ -38,11 +38,15 @@ export function spelled(value, { digits, boxed, unit = "" }) {
   return (boxed === undefined ? number(value) : figure(value, null)) + (["", "°", "%"].includes(unit) ? "" : "\u2009") + unit;
 }
 
+const ABSENT = "\0"; // no page's HTML can hold it
+
 // A link with the numbers of a state; where there are none, the sim that it opens has its own.
 export function filled(href, state) {
   const spelt = href.replace(/\{value:([^{}:]+)(?::(\d+))?\}/g, (_, path, digits) => {
     const numbers = [valueAt(state, path)].flat();
-    return numbers.every(Number.isFinite) ? numbers.map((each) => Number(each.toPrecision(Number(digits || 6)))).join() : "none";
+    return numbers.every(Number.isFinite) ? numbers.map((each) => Number(each.toPrecision(Number(digits || 6)))).join() : ABSENT;
   });
-  return spelt.replace(/(?<=[?&])[^=&]+=none(&|$)/g, "");
+  const [, path, query = "", part = ""] = /^([^?#]*)(?:\?([^#]*))?(#.*)?$/.exec(spelt);
+  const kept = query.split("&").filter((each) => each && !each.includes(ABSENT)).join("&");
+  return path + (kept && "?") + kept + part;
 }

@@ -33,6 +33,11 @@ export class Address {
     return new URL(sim.path.replace(/\/s\/([0-9a-f]{20})\/.*$/, (_, here) => `/s/${room ?? here}/`), location.href).href;
   }
 
+  // The application's own address, which may end like a sim's begins: the path that it is served under is free.
+  get site() {
+    return sim.place.slice(0, sim.place.lastIndexOf("/sims/"));
+  }
+
   // A link to a page of the sim in this state; to its embed, in a room of its own.
   link(page) {
     return new URL(this.of(sim.path.replace(/\/s(\/[^/]+){1,2}\/$/, `/${page}`)), location.href).href;

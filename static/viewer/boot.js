@@ -3,7 +3,7 @@
 (() => {
   const data = JSON.parse(document.getElementById("sim3").textContent);
   const root = document.documentElement;
-  root.classList.toggle("s3-led", window.name === "lesson"); // the text around says what to do
+  root.classList.toggle("s3-led", window.name === "lesson"); // the text around says what to do (names of frames: base.html)
 
   const boot = () => {
     const given = new URLSearchParams(location.search);

@@ -18,7 +18,8 @@ export class Channel {
     this.goesOn = goesOn;
     this.socket = null;
     this.retryAfter = FIRST;
-    this.kept = []; // inputs that a server which comes anew may not know of, in order
+    this.answered = false; // whether the server has answered this socket's greeting, and so takes inputs
+    this.kept = []; // inputs that the server may not know of, in order
   }
 
   // Somebody is there again.
@@ -31,13 +32,16 @@ export class Channel {
     this.socket.onopen = () => {
       this.retryAfter = FIRST;
       this.send({ type: "hello", dark: sim.dark, reduced: reduced.matches, ...this.greeting() });
-      for (const each of this.kept) this.socket.send(JSON.stringify(each.message));
-      for (const each of this.kept) each.sent = true;
     };
-    this.socket.onmessage = (event) => this.take(JSON.parse(event.data));
+    this.socket.onmessage = (event) => {
+      const message = JSON.parse(event.data);
+      if (!this.answered && message.type === "state") this.catchUp(message.begins);
+      this.take(message);
+    };
     this.socket.onclose = (event) => {
       this.socket = null;
-      this.forget();
+      if (this.answered) this.forget();
+      this.answered = false;
       this.lost(event.code, event.reason);
       if (event.code === IDLE) return; // until somebody is there again
       setTimeout(() => this.open(), this.retryAfter);
@@ -46,24 +50,40 @@ export class Channel {
   }
 
   send(message) {
-    const open = this.socket?.readyState === WebSocket.OPEN;
-    if (INPUTS.has(message.type)) {
+    const input = INPUTS.has(message.type);
+    if (input) {
       this.goesOn(message);
-      this.keep(message, open);
+      this.keep(message);
     }
-    if (open) this.socket.send(JSON.stringify(message));
+    if (this.socket?.readyState === WebSocket.OPEN && (this.answered || !input)) this.socket.send(JSON.stringify(message));
   }
 
-  // What was put in shortly before the connection breaks, or while there is none, is said when there is one again. A
-  // press that was sent isn't, for twice is more than once; and nothing from before it, for it led on from there.
-  keep(message, sent) {
-    this.forget();
-    const key = `${message.type} ${message.name}`;
-    if (sent && !ABSOLUTE.has(message.type)) {
+  // What is put in while there is no connection is said when there is one again. What was sent shortly before it broke
+  // is said again only to a room that `begins` with the state that this page held: one that went on all the time had
+  // it, and may have been moved by others since.
+  catchUp(begins) {
+    this.answered = true;
+    const said = this.kept.filter(({ sent }) => begins || !sent);
+    this.kept = [];
+    for (const { message } of said) {
+      this.socket.send(JSON.stringify(message));
+      this.keep(message);
+    }
+  }
+
+  // A press that was sent isn't said again, for twice is more than once; and nothing from before it, for it led on from
+  // there. Of what leads to the same state when it is said twice, the last counts; but a press that waits saw the one before.
+  keep(message) {
+    const sent = this.answered;
+    const absolute = ABSOLUTE.has(message.type);
+    if (sent) this.forget();
+    if (sent && !absolute) {
       this.kept = [];
       return;
     }
-    if (ABSOLUTE.has(message.type)) this.kept = this.kept.filter((each) => each.key !== key);
+    const key = `${message.type} ${message.name}`;
+    const press = this.kept.findLastIndex((each) => !ABSOLUTE.has(each.message.type));
+    if (absolute) this.kept = this.kept.filter((each, k) => k <= press || each.key !== key);
     this.kept.push({ key, message, sent, at: performance.now() });
     this.kept.splice(0, this.kept.length - MOST_KEPT);
   }

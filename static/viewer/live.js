@@ -112,8 +112,7 @@ export class Live {
       if (target.dataset.lend) this.lend(target.dataset.lend === "on");
       if (target.dataset.copies) this.copy(this.box.querySelector(`[data-link=${target.dataset.copies}]`));
     });
-    const code = `${sim.place.split("/sims/")[0]}/qr?url=`;
-    this.box.querySelector(".s3-code img").src = code + encodeURIComponent(this.address.watched());
+    this.box.querySelector(".s3-code img").src = `${this.address.site}/qr?url=${encodeURIComponent(this.address.watched())}`;
     this.fill();
   }
 

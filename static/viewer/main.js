@@ -148,10 +148,10 @@ class Page {
     this.lead.again();
   }
 
-  // On its way the view of who is led is no news for the server.
+  // On its way the view of who is led is no news for the server, unless a hand may drag something in it.
   looked(view) {
     this.view.looked(view);
-    return this.lead.gliding;
+    return this.lead.gliding && !this.view.hands.size;
   }
 }
 

@@ -1,7 +1,7 @@
 // From where the scene is looked at: the sim's own view, fitted to the page's size, until somebody chooses another. By
 // pointer and finger viser does the turning; buttons and keys are done here.
 import { embedded, scene, sim } from "./page.js";
-import { sceneCanvas } from "./viser_dom.js";
+import { sceneCanvas, tellCamera } from "./viser_dom.js";
 
 const REST = 150; // milliseconds without another size
 const KEPT = 400; // milliseconds between two addresses: Safari allows a hundred in 30 s
@@ -106,6 +106,7 @@ export class View {
     const inside = event.target.matches?.("canvas");
     this.from = inside ? [event.clientX, event.clientY] : null;
     if (!inside) return;
+    tellCamera();
     if (event.pointerType !== "touch") delete scene.dataset.shared;
     else addEventListener("pointerup", () => delete scene.dataset.shared, { once: true });
     sceneCanvas()?.focus({ preventScroll: true });

@@ -12,6 +12,8 @@ const QUICK = 20; // milliseconds with which it gets the whole one back; a coars
 const SAMPLES = 8; // changes between two such decisions
 let viewer = null; // viser's own state, once it is there
 let eye = null; // what viser's camera last said of itself
+let untold = null; // the same where the server wasn't told of it
+let send = null; // tells the server something, as viser's client does
 
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
@@ -161,15 +163,22 @@ export function lookFrom([x, y, z, u, v, w]) {
 
 // What viser tells the server of its camera tells us from where the scene is looked at.
 function watchCamera(mutable, looked) {
-  let send = mutable.sendMessage;
+  send = mutable.sendMessage;
   const watched = (message) => {
     if (message.type === "ViewerCameraMessage") {
       eye = message;
-      if (looked([...message.position, ...message.look_at])) return;
+      untold = looked([...message.position, ...message.look_at]) ? message : null;
+      if (untold) return;
     }
     send(message);
   };
   Object.defineProperty(mutable, "sendMessage", { configurable: true, get: () => watched, set: (other) => { send = other; } });
+}
+
+// Before a hand drags something: the server works out by the camera where to.
+export function tellCamera() {
+  if (untold) send(untold);
+  untold = null;
 }
 
 // The ray through a place on the page, where the scene is: origin, then direction; null before there is a camera.

@@ -13,6 +13,7 @@ import pytest
 from starlette.websockets import WebSocket
 
 from app.rooms import telling
+from app.rooms.keys import new_key, room_of
 from app.sockets.outgoing import MOST_WAITING, Outgoing
 from sims.kit.scene.view import FIELD
 from tests.app.conftest import Local
@@ -94,6 +95,14 @@ def test_the_driver_knows_how_many_watch_and_watchers_don_t(room: Room) -> None:
     assert "ticket" not in part(first)
     second.close()
     room.teacher.until(lambda: part(room.teacher)["watchers"] == 1, "one who watches")
+
+
+def test_only_the_first_page_with_control_is_told_that_the_room_begins_with_its_state(local: Local) -> None:
+    key = new_key()
+    with ExitStack() as stack:
+        kinds: tuple[dict[str, Any], ...] = ({"room": room_of(key)}, {"key": key}, {"key": key})
+        pages = [stack.enter_context(Page(local.url, "yaw=5", **kind)) for kind in kinds]
+        assert [page.states[0]["begins"] for page in pages] == [False, True, False]
 
 
 def test_a_watcher_follows_the_viewpoint_lets_go_and_rejoins(room: Room) -> None:

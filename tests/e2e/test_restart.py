@@ -12,6 +12,57 @@ from tests.e2e.test_lessons import entered, read, state
 from tests.server import Server
 
 SMALL: ViewportSize = {"width": 640, "height": 480}
+# What a channel says on each of its sockets. A step of what happens is what is put in, as "yaw=5", or a
+# press, as "apply". The connection "opens" to a room that goes on, or "begins" anew, or is "full"; it "breaks"; a number
+# is milliseconds that pass.
+SAID = """async (story) => {
+  const { Channel } = await import(sim3.main.replace("main.js", "channel.js"));
+  const [clock, wait, Socket] = [performance.now, setTimeout, WebSocket];
+  const sockets = [];
+  let [now, again] = [0, null];
+  performance.now = () => now;
+  window.setTimeout = (does) => { again = does; };
+  window.WebSocket = class {
+    static OPEN = 1;
+    said = [];
+    constructor() { sockets.push(this); }
+    send(text) {
+      const { type, name, value } = JSON.parse(text);
+      if (type !== "hello") this.said.push(type === "slide" ? `${name}=${value}` : name);
+    }
+  };
+  const channel = new Channel(() => ({}), () => {}, () => {}, () => {});
+  const open = (answer) => {
+    if (sockets.length) again();
+    else channel.open();
+    const socket = sockets.at(-1);
+    socket.readyState = 1;
+    socket.onopen();
+    if (answer) socket.onmessage({ data: JSON.stringify({ type: "state", ...answer }) });
+  };
+  const does = {
+    opens: () => open({ begins: false }), begins: () => open({ begins: true }), full: () => open(null),
+    breaks: () => sockets.at(-1).onclose({ code: 1006, reason: "" }),
+  };
+  for (const step of story.split(" ")) {
+    const [name, value] = step.split("=");
+    if (Number(step)) now += Number(step);
+    else if (does[step]) does[step]();
+    else channel.send(value ? { type: "slide", name, value: Number(value) } : { type: "action", name });
+  }
+  [performance.now, window.setTimeout, window.WebSocket] = [clock, wait, Socket];
+  return sockets.map(({ said }) => said.join(" "));
+}"""
+STORIES = {
+    "opens breaks apply 100 opens 400 breaks begins": ["", "apply", ""],
+    "opens breaks yaw=9 3000 full 10 breaks 500 opens 10 breaks begins": ["", "", "yaw=9", "yaw=9"],
+    "opens yaw=5 500 breaks 30000 opens": ["yaw=5", ""],
+    "opens yaw=5 500 breaks 30000 roll=1 begins": ["yaw=5", "yaw=5 roll=1"],
+    "opens yaw=5 2000 breaks begins": ["yaw=5", ""],
+    "opens yaw=5 apply breaks begins": ["yaw=5 apply", ""],
+    "opens breaks yaw=1 yaw=2 apply yaw=3 opens": ["", "yaw=2 apply yaw=3"],
+}
+"""What happens, and what is then said on each of the sockets that were opened."""
 
 
 def came_back(learner: Learner, connections: int, **state: object) -> None:
@@ -42,6 +93,11 @@ def goes_on(reader: Learner) -> None:
     expect(reader.page.locator(".current")).to_have_id("the-last-degree")
     reader.page.locator(".current").get_by_role("button", name="Show this").click()
     state(reader, pitch=89, yaw=0)
+
+
+def test_what_is_put_in_while_the_connection_breaks_is_neither_lost_nor_said_twice(classroom: Classroom) -> None:
+    frame = classroom.open_column("euler-angles/embed").frame
+    assert {story: frame.evaluate(SAID, story) for story in STORIES} == STORIES
 
 
 def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: Server) -> None:

@@ -55,6 +55,41 @@ LED = """async ([told, letGo]) => {
   return { seen: seen.length ? seen : [lead.at], gliding: lead.gliding, reduced: matches };
 }"""
 
+# The application's address under a path that is called as the one of its sims.
+SITE = """async () => {
+  const { Address } = await import(sim3.main.replace("main.js", "address.js"));
+  const { place } = sim3;
+  sim3.place = place.replace("/sims/", "/sims/sims/");
+  const { site } = new Address();
+  sim3.place = place;
+  return site.replace(new URL(place).origin, "");
+}"""
+
+# Of a view that is led, what the server is told before a hand comes down on the scene (x is 1, then 2), while it is down
+# (3), and after that (4).
+TOLD = """async () => {
+  const { Lead } = await import(sim3.main.replace("main.js", "lead.js"));
+  const own = Object.getOwnPropertyDescriptor(Lead.prototype, "gliding");
+  Object.defineProperty(Lead.prototype, "gliding", { configurable: true, get: () => true });
+  const told = [];
+  const canvas = document.querySelector(".s3-scene").appendChild(document.createElement("canvas"));
+  const root = { getState: () => ({ viewport: {}, setDpr() {}, invalidate() {} }), subscribe() {} };
+  window.__viserMutable = {
+    canvas, nodePoseData: {}, scene: { __r3f: { root } }, requestRender() {}, sendMessage: ({ position }) => told.push(position[0]),
+  };
+  const look = (x) => window.__viserMutable.sendMessage({ type: "ViewerCameraMessage", position: [x, 0, 0], look_at: [0, 0, 0] });
+  const hand = (kind) => canvas.dispatchEvent(new PointerEvent(kind, { bubbles: true, pointerId: 9 }));
+  look(1);
+  look(2);
+  hand("pointerdown");
+  look(3);
+  hand("pointerup");
+  look(4);
+  Object.defineProperty(Lead.prototype, "gliding", own);
+  canvas.remove();
+  return told;
+}"""
+
 
 def same_scene(a: Learner, b: Learner) -> None:
     """Both browsers received the same scene (not the same panel: a watcher's is disabled)."""
@@ -151,6 +186,7 @@ def test_a_teacher_presents_hands_over_takes_back_and_a_watcher_takes_a_copy(cla
     watch_link = dialog.get_by_label("Link to watch").input_value()
     assert watch_link == teacher.watch_link
     teacher.until(lambda: dialog.get_by_role("img").evaluate("(code) => code.naturalWidth > 0"))
+    assert teacher.frame.evaluate(SITE) == "/sims"
 
     watcher = classroom.open_column(watch_link)
     expect(dialog.get_by_text("1 person is watching.")).to_be_visible()
@@ -208,6 +244,8 @@ def test_a_view_that_is_led_glides_round_what_it_looks_at(classroom: Classroom) 
     assert at_once["reduced"]
     assert at_once["seen"] == [told["view"]]
 
+    assert calm.frame.evaluate(TOLD) == [2, 3], "what a hand drags is worked out from the view that it sees"
+
 
 def test_a_watcher_looks_from_where_the_teacher_does_until_their_own_hand_turns_the_view(classroom: Classroom) -> None:
     with Page(classroom.server.url) as teacher:
@@ -230,8 +268,13 @@ def test_a_watcher_looks_from_where_the_teacher_does_until_their_own_hand_turns_
         at = box(watcher.frame.locator("canvas[data-engine]"))
         watcher.pull((at["x"] + 40, at["y"] + 200), 60, 10)
         expect(bar.get_by_role("status")).to_have_text("You are watching, from your own view.")
-        look(1.0, -2.0, 6.0)
-        watcher.page.wait_for_timeout(400)
+        led = [message for message in watcher.sockets.told if message["type"] == "led"]
+        with Page(classroom.server.url, room=teacher.room) as other:
+            look(1.0, -2.0, 6.0)
+            other.until(lambda: np.allclose(other.led.get("view", [9])[:3], (1.0, -2.0, 6.0)), "who follows to be led")
+        teacher.slide("yaw", 33)
+        watcher.until(lambda: watcher.params["yaw"] == 33)
+        assert [message for message in watcher.sockets.told if message["type"] == "led"] == led
         assert not looks(1.0, -2.0, 6.0)
         bar.get_by_role("button", name="Follow the view").click()
         watcher.until(lambda: looks(1.0, -2.0, 6.0))

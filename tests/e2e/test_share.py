@@ -153,8 +153,14 @@ def test_a_class_in_a_frame_is_joined_and_one_that_cant_be_opened_there_says_so(
     frame = framed(learner, course, "/class", SANDBOX)
     frame.get_by_role("button", name="Open the class").click()
     frame.get_by_role("alert").get_by_text("in a tab of its own").wait_for()
+    frame.get_by_role("button", name="Open the class").click()
+    join = frame.get_by_role("button", name="Join")
     frame.get_by_role("textbox").fill(code)
-    frame.get_by_role("button", name="Join").click()
+    join.evaluate("(button) => { Object.assign(button, { name: 'by', value: 'hand' }).form.action += '?old=1'; }")
+    with learner.page.expect_request("**/class?*") as asked:
+        assert frame.get_by_role("alert").count() == 1, "what can't be sent is said once"
+        join.click()
+    assert parse_qs(urlsplit(asked.value.url).query) == {"code": [code], "by": ["hand"]}, "as the browser would send it"
     learner.until(lambda: "yaw=45" in frame.child_frames[0].url)
     learner.until(lambda: learner.sockets.state["params"]["yaw"] == 45)
     sim = frame.child_frames[0]
