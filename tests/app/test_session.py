@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from app.rooms import drawing, motion, registry, telling
 from app.rooms.keys import new_key, room_of
-from app.rooms.looking_up import LookingUp
+from app.rooms.looking_up import MOST, LookingUp
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
@@ -1227,17 +1227,24 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
     asyncio.run(asyncio.wait_for(test(), 20))
 
 
-def test_a_pointer_that_passes_takes_the_place_of_no_click() -> None:
+def test_a_drag_and_a_pointer_at_once_take_the_place_of_no_press() -> None:
     taken: list[str] = []
 
     async def test() -> None:
         pool = Pool()
         looking_up = LookingUp(pool, asyncio.Lock(), lambda error: taken.append(repr(error)))
-        for kind, name in (("place", "click"), ("pointer", "there"), ("pointer", "here"), ("", "press"), ("", "press")):
+        drag_and_pointer = [(kind, f"{kind} {k}") for k in range(40) for kind in ("place", "pointer")]
+        for kind, name in [("place", "click"), ("", "press"), ("", "press"), *drag_and_pointer]:
             looking_up.ask(lambda name=name: name, taken.append, kind)  # type: ignore[misc]
         assert looking_up.task is not None
+        await looking_up.task
+        assert taken == ["click", "press", "press", "place 39", "pointer 39"]
+        taken.clear()
+        for k in range(MOST + 2):  # only presses take the place of presses
+            for kind in ("", "place", "pointer"):
+                looking_up.ask(lambda name=f"{kind}{k}": name, taken.append, kind)  # type: ignore[misc]
         await looking_up.task
         pool.close()
 
     run(test)
-    assert taken == ["click", "here", "press", "press"]
+    assert [name for name in taken if name.isdecimal()] == [f"{k}" for k in range(2, MOST + 2)]
