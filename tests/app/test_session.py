@@ -1227,6 +1227,40 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
     asyncio.run(asyncio.wait_for(test(), 20))
 
 
+def test_what_is_under_a_pointer_goes_with_it_and_fails_for_one_viewer_alone() -> None:
+    class Looks(Eye):
+        sim = SimpleNamespace(slug="toy")
+
+        def under(self, found: object) -> None:
+            if self.broken:
+                raise RuntimeError("a viewer broke")
+            shown.append(found)
+
+    shown: list[object] = []
+
+    async def test() -> None:
+        sim, _ = toy(heavy=True)
+        room = Room(sim=dataclasses.replace(sim, under=lambda p, ray: ray))
+        session, other = room.session, [Looks(broken=True) for _ in range(5)]
+        gone: list[dict[str, Any]] = []
+        session.listen(gone.append)
+        await room.drawn()
+        for eye in [*other, Looks()]:
+            session.drawing.viewers.add(eye)  # type: ignore[arg-type]
+        session.drawing.viewers.discard(room.eye)
+        session.pass_over((1.0,), gone.append)
+        await room.drawn()
+        assert shown == [(1.0,)]
+        assert gone[-1] == {"type": "over"}
+        session.pass_over((2.0,), gone.append)
+        session.leave(listener=gone.append)
+        await room.drawn()
+        assert shown == [(1.0,), None], "it leaves nothing behind, also of what was still being found out"
+        assert not room.errors
+
+    run(test)
+
+
 def test_a_drag_and_a_pointer_at_once_take_the_place_of_no_press() -> None:
     taken: list[str] = []
 
