@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import logging
 import math
+import time
 from collections import OrderedDict
 from datetime import UTC, datetime
+from traceback import walk_tb
 
 SELDOM = 60.0
 """Seconds between two lines of the same kind."""
@@ -31,7 +33,8 @@ class Json(logging.Formatter):
 class Seldom(logging.Filter):
     """Lets what is said again and again pass once a minute, with how often it wasn't: a drag that fails fills no disk.
 
-    Lines are of a kind whose words, first argument (the sim, mostly) and exception are the same.
+    Lines are of a kind whose words, first argument (the sim, mostly), kind of exception and line that raised it are
+    the same.
     """
 
     def __init__(self) -> None:
@@ -42,15 +45,25 @@ class Seldom(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
         """Whether the line is written."""
         first = str(record.args[0]) if isinstance(record.args, tuple) and record.args else ""
-        kind = record.name, record.msg, first, record.exc_info[0] if record.exc_info else None
+        kind = record.name, record.msg, first, *_raised(record)
+        now = time.monotonic()
         at, left_out = self._said.pop(kind, (-math.inf, 0))
-        passes = record.created - at >= SELDOM
-        self._said[kind] = (record.created, 0) if passes else (at, left_out + 1)
+        passes = now - at >= SELDOM
+        self._said[kind] = (now, 0) if passes else (at, left_out + 1)
         if len(self._said) > REMEMBERED:
             self._said.popitem(last=False)
         if passes and left_out:
             record.msg = f"{record.msg} ({left_out} more like it before)"
         return passes
+
+
+def _raised(record: logging.LogRecord) -> tuple[object, ...]:
+    """The kind of a record's exception, and the file and line that raised it."""
+    if record.exc_info is None:
+        return ()
+    kind, _, where = record.exc_info
+    frames = [(frame.f_code.co_filename, line) for frame, line in walk_tb(where)]
+    return kind, *frames[-1:]
 
 
 def begin(how: str) -> None:

@@ -52,7 +52,8 @@ def error_message(
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
     place = traceback.extract_tb(error.__traceback__)[-1]
     where = "here" if state is None else f"?{state.query()}"
-    log.error("%s can't go on from %s: %r in %s, line %s", sim.slug, where, error, place.filename, place.lineno)
+    stopped = f"{sim.slug} in {place.filename}, line {place.lineno}"  # in one, for lines of another place are others
+    log.error("%s, can't go on from %s: %r", stopped, where, error)
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
 
 

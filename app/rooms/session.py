@@ -285,17 +285,19 @@ class Session:
         """Highlight for everybody what somebody hovers over in a picture or table; an empty name is nothing."""
         self._highlight.show(name, self.drawing.viewers, by)
 
-    def pass_over(self, ray: tuple[float, ...] | None, shown: Callable[[], None]) -> None:
+    def pass_over(self, ray: tuple[float, ...] | None, by: Listener) -> None:
         """Show everybody what is under a pointer: the origin and direction of its ray, or None where it has left.
 
-        `shown` hears when that is done.
+        The channel of whose it is hears when that is done.
         """
         under, params = self.sim.under, self.params
 
         def show(found: object) -> None:
-            for viewer in list(self.drawing.viewers) if self.drawing.solved is params else ():
-                viewer.under(found)
-            shown()
+            if by not in self.telling.listeners:  # it has left meanwhile, and takes nothing away again
+                return
+            if self.drawing.solved is params:
+                self._highlight.under(found, self.drawing.viewers, by)
+            by({"type": "over"})
 
         if under is not None:
             self._find(lambda: None if ray is None else under(params, ray, *self.given), show, "pointer")

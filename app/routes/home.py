@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
@@ -69,7 +69,7 @@ class Wish:
 async def sweeps(request: Request, slug: str) -> Response:
     """What can be swept in a state, for the page to offer."""
     sim = sim_or_404(slug)
-    numbers = [] if sim.heavy else sweepable(_wish(sim, request.query_params.multi_items()).params)
+    numbers = [] if sim.heavy else _sweepable(sim, _wish(sim, request.query_params.multi_items()).params)
     offered = [{"name": n.name, "label": n.label, "low": n.low, "high": n.high, "unit": n.unit} for n in numbers]
     return JSONResponse({"numbers": offered, "why": HEAVY if sim.heavy else ""}, headers=ANYWHERE)
 
@@ -119,7 +119,7 @@ def _wish(sim: AnySim, items: list[tuple[str, str]]) -> Wish:
         return Wish(params, options, None, ())
     if sim.heavy:
         raise Refusal(422, HEAVY)
-    known = {each.name: each for each in sweepable(params)}
+    known = {each.name: each for each in _sweepable(sim, params)}
     swept = known.get(asked.get("sweep", ""))
     if swept is None:
         raise Refusal(422, f"sweep: got {clipped(asked.get('sweep', ''))!r}, allowed: one of: {', '.join(known)}.")
@@ -129,6 +129,11 @@ def _wish(sim: AnySim, items: list[tuple[str, str]]) -> Wish:
     if begin == end:
         raise Refusal(422, f"from and to are both {clipped(asked['to'])}; a sweep needs two values.")
     return Wish(params, options, swept, swept.values(begin, end, _frames(asked.get("frames", f"{FRAMES}"))))
+
+
+def _sweepable(sim: AnySim, params: Params) -> Iterator[Swept]:
+    """What the controls of a state show, and a sweep can lead."""
+    return sweepable(params, sim.offers(params).idle())
 
 
 def _frames(text: str) -> int:

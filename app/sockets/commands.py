@@ -77,7 +77,7 @@ class Commands:
 
     def pass_over(self, ray: tuple[float, ...] | None) -> None:
         """Show what is under the pointer; the page hears when that is done, and says where it is by then."""
-        self.attempt(self._session.pass_over, ray, lambda: self._answer({"type": "over"}))
+        self.attempt(self._session.pass_over, ray, self._answer)
 
     def hold(self, name: str, pixel: tuple[float, float]) -> None:
         """Take the place where a handle in a picture was dragged to; those of the scene have names with a slash."""

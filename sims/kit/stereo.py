@@ -25,7 +25,9 @@ SMALLEST, LARGEST = 16, 8192
 """Pixels that a picture has, across and down."""
 SHORTEST, CLOSEST = 1.0, 1e-9
 """Pixels of focal length, and length of T, that somebody's pair has at least."""
-OwnPair = Annotated[Own | None, Vector(-1e6, 1e6, step=0.01, title="Own stereo pair", hidden=True)]
+FARTHEST = 1e6
+"""How far from zero any number of it may be."""
+OwnPair = Annotated[Own | None, Vector(-FARTHEST, FARTHEST, step=0.01, title="Own stereo pair", hidden=True)]
 OwnSizes = Annotated[
     tuple[int, int, int, int] | None,
     Vector(SMALLEST, LARGEST, step=1, unit="px", title="Sizes of your pictures", hidden=True),

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.rotations import matrix_to_axis_angle
 from sims.kit.calibration import Written, cameras, poses
-from sims.kit.stereo import Size
+from sims.kit.stereo import CLOSEST, FARTHEST, LARGEST, SHORTEST, SMALLEST, Size, length
 
 ENDINGS = (".yaml", ".yml", ".json", ".xml", ".txt")
 """How files end that such a text may come from."""
@@ -56,11 +56,21 @@ def chosen(found: list[Found], left: int, right: int) -> tuple[Found, Found]:
 def calibrated(left: Found, right: Found) -> dict[str, Any]:
     """What of a state such a pair is: `own` and `own_size` of `sims.kit.stereo`. Raises ValueError in words."""
     T = np.array(right["pose"]) @ np.linalg.inv(left["pose"])
-    if not T[:3, 3].any():
-        raise ValueError("T is zero: without a baseline there is no F, and no depth.")
     axis, angle = matrix_to_axis_angle(T[:3, :3])
     own = *left["lens"], *right["lens"], *np.degrees(axis * angle).tolist(), *T[:3, 3].tolist()
     size = (*left["size"], *right["size"]) if left["size"] and right["size"] else None
+    if (f := min(own[:2] + own[4:6])) < SHORTEST:
+        raise ValueError(f"A focal length is {f:g}: this sim takes {SHORTEST:g} or more, for it is in pixels.")
+    if (long := length(own)) < CLOSEST:
+        raise ValueError(
+            f"T is {long:g} long: this sim takes {CLOSEST:g} or more, for without a baseline there is no F, and no"
+            " depth."
+        )
+    if abs(most := max(own, key=abs)) > FARTHEST:
+        raise ValueError(f"There is {most:g} in K1, K2 or T: this sim takes numbers up to {FARTHEST:,.0f}.")
+    if size and not all(SMALLEST <= pixels <= LARGEST for pixels in size):
+        across = " and ".join(f"{width} × {height}" for width, height in (left["size"], right["size"]))
+        raise ValueError(f"The pictures have {across} pixels: this sim takes {SMALLEST} to {LARGEST} across and down.")
     return {"own": own, "own_size": size}
 
 

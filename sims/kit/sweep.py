@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,9 +41,9 @@ class Swept:
         return quantity(value, self.unit, min(digits, 4))
 
 
-def sweepable(params: Params) -> Iterator[Swept]:
-    """The numbers of a state that a sweep can lead, sliders first."""
-    names = [name for name in params.arranged if name in params.numeric]
+def sweepable(params: Params, idle: Collection[str] = ()) -> Iterator[Swept]:
+    """The numbers of a state that a sweep can lead, sliders first; without those that are `idle` in it."""
+    names = [name for name in params.arranged if name in params.numeric and name not in idle]
     for name in sorted(names, key=lambda name: not isinstance(params.kinds[name], Slider)):
         kind, value = params.kinds[name], getattr(params, name)
         if isinstance(kind, Number) and not isinstance(kind, OptionalNumber) and value is not None:

@@ -17,7 +17,7 @@ from geometry.triangulation import triangulate_midpoint, triangulate_optimal
 from sims.kit import stereo_text
 from sims.kit.calibration import cameras
 from sims.kit.readout import quantity
-from sims.kit.stereo import LARGEST, length
+from sims.kit.stereo import length
 from sims.kit.stereo_text import Found, calibrated, chosen, taken
 from sims.triangulation.holding import held_point, seen
 from sims.triangulation.params import OF_CURVE, OF_RIG, TriangulationParams
@@ -97,8 +97,6 @@ def with_pair(p: TriangulationParams, left: Found, right: Found) -> dict[str, An
     made = calibrated(left, right)
     made |= {"baseline": _metres(length(made["own"])) or p.baseline, "before": None}
     after = p.model_copy(update=made)
-    if max(size for each in after.sizes for size in each) > LARGEST:
-        raise ValueError(f"The pictures are too large: this sim takes {LARGEST} pixels across and down.")
     cameras, middles, before = rig_of(after), _middles(after), rig_of(p)
     held = triangulate_optimal(before.left, before.right, p.left_uv, p.right_uv)
     if held.valid and (pixels := seen(cameras, held.point)) and _meet(cameras, pixels):

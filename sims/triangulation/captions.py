@@ -24,7 +24,8 @@ def caption(p: TriangulationParams, s: TriangulationSolution) -> str:
         return f"That is a corner of {s.matched.of}: your point is {length(s.matched.apart)} from it."
     if p.noise > 0.0:
         return "Noise makes the rays miss each other: the point may be anywhere in the ellipsoid."
-    return "Drag a point in one picture onto a corner, then match it in the other."
+    # The 3D point first: a low frame shows the scene, and the pictures only to who scrolls.
+    return "Drag the 3D point onto a corner; or its place in one picture, then match it in the other."
 
 
 def _change(p: TriangulationParams, s: TriangulationSolution) -> str:

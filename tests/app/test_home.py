@@ -10,7 +10,7 @@ import pytest
 
 from app.routes import answers, home
 from geometry import GeometryError
-from sims import SIMS
+from sims import SIMS, by_slug
 from sims.kit import taken
 from sims.kit.sim import Sim
 from tests.app.conftest import Local
@@ -38,6 +38,16 @@ def test_every_sim_offers_sweeps(http: httpx.Client, sim: Sim[Any, Any]) -> None
     assert offered["why"] == ""
     assert all(number["low"] < number["high"] and number["label"] for number in offered["numbers"])
     assert offered["numbers"]
+
+
+def test_what_the_controls_of_a_state_hide_is_no_sweep(http: httpx.Client) -> None:
+    sim = by_slug("triangulation")
+    assert sim is not None
+    own = sim.params().changed(sim.states["toe-in pair"]).query()
+    names = [{n["name"] for n in http.get(f"/sims/triangulation/sweeps?{q}").json()["numbers"]} for q in ("", own)]
+    assert names[0] - names[1] == {"focal", "doffs", "cx", "cy", "width", "height"}
+    refused = http.get(f"/sims/triangulation/home?sweep=focal&{own}").json()["detail"]
+    assert "sweep: got 'focal', allowed: one of: baseline" in refused
 
 
 def test_a_sim_that_works_long_offers_its_state_alone(http: httpx.Client) -> None:

@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from app.rooms import drawing, motion, registry, telling
 from app.rooms.keys import new_key, room_of
-from app.rooms.looking_up import LookingUp
+from app.rooms.looking_up import MOST, LookingUp
 from app.rooms.places import Full
 from app.rooms.registry import Sessions
 from app.rooms.session import Session
@@ -1227,17 +1227,58 @@ def test_a_session_has_one_thing_worked_out_at_a_time() -> None:
     asyncio.run(asyncio.wait_for(test(), 20))
 
 
-def test_a_pointer_that_passes_takes_the_place_of_no_click() -> None:
+def test_what_is_under_a_pointer_goes_with_it_and_fails_for_one_viewer_alone() -> None:
+    class Looks(Eye):
+        sim = SimpleNamespace(slug="toy")
+
+        def under(self, found: object) -> None:
+            if self.broken:
+                raise RuntimeError("a viewer broke")
+            shown.append(found)
+
+    shown: list[object] = []
+
+    async def test() -> None:
+        sim, _ = toy(heavy=True)
+        room = Room(sim=dataclasses.replace(sim, under=lambda p, ray: ray))
+        session, other = room.session, [Looks(broken=True) for _ in range(5)]
+        gone: list[dict[str, Any]] = []
+        session.listen(gone.append)
+        await room.drawn()
+        for eye in [*other, Looks()]:
+            session.drawing.viewers.add(eye)  # type: ignore[arg-type]
+        session.drawing.viewers.discard(room.eye)
+        session.pass_over((1.0,), gone.append)
+        await room.drawn()
+        assert shown == [(1.0,)]
+        assert gone[-1] == {"type": "over"}
+        session.pass_over((2.0,), gone.append)
+        session.leave(listener=gone.append)
+        await room.drawn()
+        assert shown == [(1.0,), None], "it leaves nothing behind, also of what was still being found out"
+        assert not room.errors
+
+    run(test)
+
+
+def test_a_drag_and_a_pointer_at_once_take_the_place_of_no_press() -> None:
     taken: list[str] = []
 
     async def test() -> None:
         pool = Pool()
         looking_up = LookingUp(pool, asyncio.Lock(), lambda error: taken.append(repr(error)))
-        for kind, name in (("place", "click"), ("pointer", "there"), ("pointer", "here"), ("", "press"), ("", "press")):
+        drag_and_pointer = [(kind, f"{kind} {k}") for k in range(40) for kind in ("place", "pointer")]
+        for kind, name in [("place", "click"), ("", "press"), ("", "press"), *drag_and_pointer]:
             looking_up.ask(lambda name=name: name, taken.append, kind)  # type: ignore[misc]
         assert looking_up.task is not None
+        await looking_up.task
+        assert taken == ["click", "press", "press", "place 39", "pointer 39"]
+        taken.clear()
+        for k in range(MOST + 2):  # only presses take the place of presses
+            for kind in ("", "place", "pointer"):
+                looking_up.ask(lambda name=f"{kind}{k}": name, taken.append, kind)  # type: ignore[misc]
         await looking_up.task
         pool.close()
 
     run(test)
-    assert taken == ["click", "here", "press", "press"]
+    assert [name for name in taken if name.isdecimal()] == [f"{k}" for k in range(2, MOST + 2)]

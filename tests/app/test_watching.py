@@ -7,6 +7,7 @@ import json
 import logging
 import re
 import socket
+from types import SimpleNamespace
 from typing import Any
 
 import httpx
@@ -19,8 +20,10 @@ from websockets.exceptions import InvalidStatus
 from app import logs
 from app.rooms import telling
 from app.settings import Settings
+from app.trouble import error_message
 from tests.app.conftest import Local
 from tests.app.page import SLUG, Page, closed, connect
+from tests.app.toys import toy
 from tests.server import PATIENCE, ROOT, Server, wait_for
 
 KUBERNETES = "1.33"
@@ -122,12 +125,13 @@ def test_json_lines_say_the_same_and_nothing_secret() -> None:
     assert "ZeroDivisionError: by the seed" in said["traceback"]
 
 
-def test_what_goes_wrong_again_and_again_is_logged_seldom() -> None:
+def test_what_goes_wrong_again_and_again_is_logged_seldom(monkeypatch: pytest.MonkeyPatch) -> None:
     seldom = logs.Seldom()
 
     def written(at: float, sim: str, error: str) -> str:
         record = logging.LogRecord("sim3", logging.ERROR, __file__, 1, "%s can't go on: %s", (sim, error), None)
-        record.created = at
+        monkeypatch.setattr(logs, "time", SimpleNamespace(monotonic=lambda: at))
+        record.created = -at  # the clock on the wall may be set back
         return record.getMessage() if seldom.filter(record) else ""
 
     assert written(0.0, "camera", "first") == "camera can't go on: first"
@@ -135,6 +139,31 @@ def test_what_goes_wrong_again_and_again_is_logged_seldom() -> None:
     assert written(3.0, "epipolar", "another") == "epipolar can't go on: another"
     assert written(61.0, "camera", "later") == "camera can't go on: later (3 more like it before)"
     assert written(122.0, "camera", "again") == "camera can't go on: again"
+
+
+def test_faults_of_two_places_are_both_logged() -> None:
+    def here() -> None:
+        raise ValueError("a")
+
+    def there() -> None:
+        raise ValueError("b")
+
+    out = io.StringIO()
+    handler = logging.StreamHandler(out)
+    handler.addFilter(logs.Seldom())
+    sim, _ = toy()
+    logging.getLogger().addHandler(handler)
+    try:
+        for fails in (here, there, here, there):
+            try:
+                fails()
+            except ValueError as error:
+                error_message(sim, error)
+                logging.getLogger("uvicorn.error").exception("Exception in ASGI application")
+    finally:
+        logging.getLogger().removeHandler(handler)
+    said = out.getvalue()
+    assert re.findall(r"^(?:ValueError: |toy in .*ValueError\(')(.)", said, re.M) == ["a", "a", "b", "b"]
 
 
 def test_compose_passes_every_setting_on() -> None:

@@ -153,7 +153,7 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     x, y = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
     mouse.move(x, y)
     mouse.down()
-    for far, words in ((40, "The rays don’t meet"), (0, "Drag a point in one picture onto a corner")):
+    for far, words in ((40, "The rays don’t meet"), (0, "Drag the 3D point onto a corner")):
         mouse.move(x + far, y + far / 4, steps=3)
         learner.until(lambda words=words: words in (learner.frame.locator(".s3-caption").text_content() or ""))  # type: ignore[misc]
         scale = before["width"] / 640

@@ -701,6 +701,7 @@ def test_cameras_points_and_rays_are_where_the_numbers_say(rig: Rig, params: Epi
         close(seen[:3, 3], C, within=1e-12)
         close(model.world_pose(f"/{side}_center")[:3, 3], C, within=1e-12)
         assert model.visible(f"/{side}_center") == (params.own is None), "somebody's pair can't be bent"
+        assert any(name.startswith(f"/{side}/") for name in model.draggable()) == (params.own is None)
         foot = ends(rig, f"/{side}/post")[1]
         close(foot[2], 0.0, within=1e-6)
         corners = pixels(params, side, model.points(f"/{side}/picture"))

@@ -27,6 +27,7 @@ K_RIGHT = np.array([[457.587, 0, 379.999], [0, 456.134, 255.238], [0, 0, 1]])
 TURN = np.array([0.05, -0.21, 0.11])
 R = cv2.Rodrigues(TURN)[0].astype(np.float64)
 T = np.array([[-0.31], [0.02], [0.04]])
+T_IN_EXAMPLE = "T: [-0.110074, 0.000399, -0.000853]"
 EXPECTED = [
     458.654, 457.296, 367.215, 248.375, 457.587, 456.134, 379.999, 255.238, *np.degrees(TURN), -0.31, 0.02, 0.04,
 ]  # fmt: skip
@@ -115,7 +116,12 @@ def test_a_pair_is_read_as_kalibr_and_ros_write_it() -> None:
         (EXAMPLE.replace("R:", "rotation:"), "“R” should have 9 numbers"),
         (EXAMPLE.replace("[458.654,", "[-458.654,"), "with fx and fy above 0"),
         (EXAMPLE.replace("[458.654, 0,", "[458.654, 3,"), "A camera matrix should be"),
-        (EXAMPLE.replace("T: [-0.110074, 0.000399, -0.000853]", "T: [0, 0, 0]"), "T is zero"),
+        (EXAMPLE.replace(T_IN_EXAMPLE, "T: [0, 0, 0]"), "T is 0 long"),
+        (EXAMPLE.replace(T_IN_EXAMPLE, "T: [0, 0, -1e-10]"), "T is 1e-10 long: this sim takes 1e-09"),
+        (EXAMPLE.replace(T_IN_EXAMPLE, "T: [0, 0, -2000000]"), "There is -2e.06 in K1, K2 or T"),
+        (EXAMPLE.replace("K2: [457.587, 0,", "K2: [0.9, 0,"), "A focal length is 0.9: this sim takes 1 or more"),
+        (EXAMPLE.replace("[752, 480]", "[752, 15]"), "752 × 15 pixels: this sim takes 16 to 8192"),
+        (EXAMPLE.replace("[752, 480]", "[9000, 480]"), "9000 × 480 pixels: this sim takes 16 to 8192"),
         (kalibr().replace("456.134, 379.999", "456.134"), "“intrinsics” should have 4 numbers"),
     ],
 )  # fmt: skip

@@ -758,7 +758,9 @@ def test_the_equations_of_the_linear_method_are_shown_with_what_solves_them(chan
 
 
 def test_the_sentence_says_what_a_change_of_the_cameras_did() -> None:
-    assert "onto a corner" in SIM.caption(START, solve(START))
+    assert SIM.caption(START, solve(START)).startswith("Drag the 3D point onto a corner")
+    reached = START.changed(SIM.handles["/point"](START, tuple(corners.PLACES[0].tolist())))
+    assert SIM.caption(reached, solve(reached)).startswith("That is a corner of")
     for changes, said in (
         ({"baseline": 1.2}, "A longer baseline, a surer depth: from ±\u00a00.063 to ±\u00a00.031"),
         ({"focal": 300.0}, "A shorter focal length, a less sure depth: from ±\u00a00.063 to ±\u00a00.126"),

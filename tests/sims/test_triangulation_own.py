@@ -361,6 +361,15 @@ def test_of_more_cameras_the_pair_is_chosen_and_it_is_said() -> None:
         calibration.changes(START.changed({"left_of_text": 4}), found)
 
 
+def test_a_pair_that_cant_be_used_is_refused_in_words() -> None:
+    for what, instead, said in (
+        ("T: .*", "T: [-1e-10, 0, 0]", "T is 1e-10 long"), ("900", "0.9", "focal length is 0.9"),
+        ("1280, 720", "1280, 12", "1280 × 12 and 1920 × 1080 pixels: this sim takes 16 to 8192"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=said):
+            calibration.changes(START, calibration.read(re.sub(what, instead, calibration.TOE_IN)))
+
+
 def test_the_robots_cameras_of_epipolar_are_taken_and_distortion_is_spoken_of() -> None:
     p = taken(ROBOT)
     assert p.sizes == ((752, 480), (752, 480))

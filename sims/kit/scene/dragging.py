@@ -14,11 +14,13 @@ from sims.kit.types import Line, Place, Vector
 
 Path = Callable[[Place, Place], Place]
 """From where a node is and where it is pulled to where it may go."""
+Hold = Callable[[bool], None]
+"""Lets a node be held, or no more: a pointer that pulls there turns the view."""
 STRIDE = math.radians(60.0)
 """How far round a circle one pull leads at most: a node doesn't jump to the circle's far side."""
 
 
-def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None, body: Any = None) -> None:
+def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None, body: Any = None) -> Hold:
     """Tell `drag` the place (world, metres) to which the pointer pulls a node of viser's.
 
     The node moves in the plane that faces the viewer; with Shift held, along the world axis nearest to the pull. One
@@ -44,12 +46,12 @@ def listen(handle: Any, drag: Callable[[Place], None], path: Path | None = None,
             target = origin + np.where(np.arange(3) == keep, pull, 0.0)
         drag((float(target[0]), float(target[1]), float(target[2])))
 
-    _on_drag(handle if body is None else body, moved)
+    return _on_drag(handle if body is None else body, moved)
 
 
 def listen_round(
     handle: Any, drag: Callable[[Place], None], grip: Any, line: Callable[[], Line | None], eye: Callable[[], Vector]
-) -> None:
+) -> Hold:
     """The same for a body that turns about a line, wherever it is taken; without a line it is carried along.
 
     `drag` is told the place to which its grip is turned, or carried: another node, which must be seen.
@@ -74,7 +76,7 @@ def listen_round(
             x, y, z = (middle + axis_angle_to_matrix(normal, angle) @ (held - middle)).tolist()
         drag((x, y, z))
 
-    _on_drag(handle, moved)
+    return _on_drag(handle, moved)
 
 
 def listen_anywhere(
@@ -102,16 +104,24 @@ def listen_anywhere(
     _on_drag(handle, moved)
 
 
-def _on_drag(handle: Any, moved: Callable[[Any, bool], None]) -> None:
+def _on_drag(handle: Any, moved: Callable[[Any, bool], None]) -> Hold:
     """Tell `moved` of each drag event, and whether Shift is held."""
 
-    @handle.on_drag("left")  # type: ignore[untyped-decorator]
-    async def _(event: Any) -> None:
+    async def plain(event: Any) -> None:
         moved(event, False)
 
-    @handle.on_drag("left", modifier="shift")  # type: ignore[untyped-decorator]
-    async def _(event: Any) -> None:
+    async def straight(event: Any) -> None:
         moved(event, True)
+
+    def hold(on: bool) -> None:
+        if on:
+            handle.on_drag("left")(plain)
+            handle.on_drag("left", modifier="shift")(straight)
+        else:
+            handle.remove_drag_callback()
+
+    hold(True)
+    return hold
 
 
 def on_sphere(radius: float, eye: Vector, pulled: Vector, *, near: bool) -> npt.NDArray[np.float64]:

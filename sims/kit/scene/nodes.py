@@ -5,7 +5,7 @@ Values that a setter was given are kept for that, not copied: an array, or a lis
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -106,6 +106,19 @@ class Grip(Solid):
     def __init__(self, handle: Any, rings: Sequence[Node]) -> None:
         super().__init__(handle)
         self._rings = rings
+        self._holds: list[Callable[[bool], None]] = []
+
+    def moves(self, hold: Callable[[bool], None]) -> None:
+        """Have something that moves it too be held only while it is shown."""
+        self._holds.append(hold)
+        if not self.handle.visible:
+            hold(False)
+
+    def show(self, visible: bool) -> None:
+        if visible != self.handle.visible:
+            for hold in self._holds:
+                hold(visible)
+        super().show(visible)
 
     def scale(self, factors: float | tuple[float, float, float]) -> None:
         for node in self._rings:

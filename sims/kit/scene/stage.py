@@ -225,12 +225,12 @@ class Stage:
     def turned_by(self, body: Node, name: str, grip: Grip, line: Callable[[], Line | None]) -> None:
         """Have a body that the grip of that name turns turn by itself too, wherever it is taken; see `listen_round`."""
         eye = partial(getattr, self.client.camera, "position")
-        dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, line, eye)
+        grip.moves(dragging.listen_round(body.handle, partial(self._drag, name), grip.handle, line, eye))
 
     def carried_by(self, parts: Sequence[Node], name: str, grip: Grip) -> None:
         """Have the parts of a body that the grip of that name moves move by themselves too, wherever they are taken."""
         for part in parts:
-            dragging.listen(grip.handle, partial(self._drag, name), body=part.handle)
+            grip.moves(dragging.listen(grip.handle, partial(self._drag, name), body=part.handle))
 
     def pulled(
         self, parts: Sequence[Node], name: str, turned: Callable[[], npt.NDArray[np.float64]], *, least: float
