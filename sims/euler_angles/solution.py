@@ -20,6 +20,8 @@ RADII = (1.62, 1.38, 1.5)
 """Metres of the three turns' arcs: the innermost is outside the wings."""
 SAME = 0.005
 """Degrees within which two angles are one."""
+ROUNDED = 1e-9
+"""Degrees beyond a bound that come of the arithmetic: an angle that is truly beyond it, by however little, isn't kept."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ def triple_of(p: EulerParams, R: Array) -> dict[str, float]:
     bounds = [p.bounds(name) for name in p.names]
 
     def beyond(triple: list[float]) -> tuple[bool, float]:
-        out = any(not low - SAME <= a <= high + SAME for a, (low, high) in zip(triple, bounds, strict=True))
+        out = any(not low - ROUNDED <= a <= high + ROUNDED for a, (low, high) in zip(triple, bounds, strict=True))
         away = sum(abs(math.remainder(a - b, 360.0)) for a, b in zip(triple, p.angles, strict=True))
         return out, away
 
