@@ -21,7 +21,7 @@ RADII = (1.62, 1.38, 1.5)
 SAME = 0.005
 """Degrees within which two angles are one."""
 ROUNDED = 1e-9
-"""Degrees beyond a bound that come of the arithmetic: an angle that is truly beyond it, by however little, isn't kept."""
+"""Degrees beyond a bound that come of the arithmetic: an angle that is truly beyond it isn’t kept, however little."""
 
 
 @dataclass(frozen=True)
