@@ -149,7 +149,7 @@ def test_what_is_shown_in_all_forms_is_recognised_again(order: str, frame: str) 
     assert len([*forms(p, solve(p))]) >= 8
 
 
-@example(rotation=Rotation.from_rotvec((0.0, 0.0, -2.0**-14)), order="xyx", frame="intrinsic")
+@example(rotation=Rotation.from_rotvec((0.0, 0.0, -(2.0**-14))), order="xyx", frame="intrinsic")
 @given(rotation=rotations, order=st.sampled_from(ORDERS), frame=st.sampled_from(FRAMES))
 def test_a_pasted_rotation_is_shown_in_the_present_order(rotation: Rotation, order: str, frame: str) -> None:
     start = EulerParams().moved({"order": order, "frame": frame, "progress": 1.0})
