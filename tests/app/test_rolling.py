@@ -37,7 +37,9 @@ async def _drag_through(replicas: Replicas, learners: list[Dragger]) -> None:
     try:
         await asyncio.gather(*dragging)
         dragging = [asyncio.create_task(each.drag(3.0)) for each in learners]
-        await asyncio.to_thread(replicas.servers[0].restart, hard=False)
+        rooms = replicas.rooms()
+        busiest = replicas.servers[rooms.index(max(rooms))]
+        await asyncio.to_thread(busiest.restart, hard=False)
         await asyncio.gather(*dragging)
     finally:
         for task in staying:
