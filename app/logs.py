@@ -9,6 +9,7 @@ import time
 from collections import OrderedDict
 from datetime import UTC, datetime
 from traceback import walk_tb
+from types import TracebackType
 
 SELDOM = 60.0
 """Seconds between two lines of the same kind."""
@@ -62,8 +63,13 @@ def _raised(record: logging.LogRecord) -> tuple[object, ...]:
     if record.exc_info is None:
         return ()
     kind, _, where = record.exc_info
+    return kind, raised_at(where)
+
+
+def raised_at(where: TracebackType | None) -> tuple[str, int]:
+    """File and line of the innermost frame."""
     frames = [(frame.f_code.co_filename, line) for frame, line in walk_tb(where)]
-    return kind, *frames[-1:]
+    return frames[-1] if frames else ("", 0)
 
 
 def begin(how: str) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import logging
-import traceback
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
 
+from app.logs import raised_at
 from app.rooms.memory import NoRoom
 from app.values import complaints, shown
 from geometry import GeometryError
@@ -50,9 +50,9 @@ def error_message(
     if isinstance(error, GeometryError):
         known = error.argument in (*sim.params.model_fields, "view")
         return refused(str(error), *[Complaint(error.argument, shown(error.received), error.allowed)] * known)
-    place = traceback.extract_tb(error.__traceback__)[-1]
+    file, line = raised_at(error.__traceback__)
     where = "here" if state is None else f"?{state.query()}"
-    stopped = f"{sim.slug} in {place.filename}, line {place.lineno}"  # in one, for lines of another place are others
+    stopped = f"{sim.slug} in {file}, line {line}"  # in one, for lines of another place are others
     log.error("%s, can't go on from %s: %r", stopped, where, error)
     return refused("That went wrong on the server, whose log says how. The state is as it was.")
 

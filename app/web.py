@@ -16,7 +16,7 @@ from starlette.routing import Route, WebSocketRoute
 from app.classes.registry import Classes
 from app.lessons.shelf import Shelf
 from app.proxies import Forwarded, Prefix
-from app.rooms.places import Fairness
+from app.rooms.places import Fairness, Full
 from app.rooms.registry import Sessions
 from app.routes import (
     about,
@@ -136,8 +136,15 @@ async def _missing(request: Request, error: Exception) -> Response:
     return response
 
 
+async def _full(request: Request, error: Exception) -> Response:
+    """What has no place now, and may have one soon."""
+    assert isinstance(error, Full)
+    request.app.state.services.bridge.refusals["full"] += 1
+    return await _missing(request, HTTPException(503, str(error), {"retry-after": str(error.wait)}))
+
+
 HANDLERS: dict[int | type[Exception], Callable[[Request, Any], Any]] = {
-    BadParams: _bad_params, 404: _missing, 503: _missing, Refusal: files.refused,
+    BadParams: _bad_params, 404: _missing, 503: _missing, Full: _full, Refusal: files.refused,
     api.BadBody: api.bad_body, Busy: api.busy, Gone: api.gone, Exception: api.failed,
 }  # fmt: skip
 """Who answers when something goes wrong."""

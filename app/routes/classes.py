@@ -14,7 +14,6 @@ from app.classes.subject import Subject
 from app.lessons.shelf import Shelf
 from app.proxies import address_of
 from app.rooms.keys import new_key
-from app.rooms.places import Full
 from app.routes import links, qr, rendering
 from app.routes.pages import page
 from app.routes.rendering import AnySim
@@ -91,9 +90,6 @@ async def begin(request: Request, given: Given) -> Response:
         return _form(request, given, address, challenge, state, words, 422)
     except ValueError:
         return _form(request, given, "", "", "", "Choose a lesson or a sim.", 422)
-    except Full as full:
-        given.bridge.refusals["full"] += 1
-        raise HTTPException(503, str(full), {"retry-after": str(full.wait)}) from None
     address = links.spelled({"page": subject.page, **dict(parse_qsl(subject.query, keep_blank_values=True))})
     return RedirectResponse(f"{rendering.base(request)}/class/{code}/{key}/?{address}", 303, NEVER_KEPT)
 

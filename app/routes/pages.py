@@ -12,7 +12,7 @@ from fastapi.staticfiles import StaticFiles
 from app import security
 from app.proxies import address_of
 from app.rooms.keys import is_room, new_key, room_of
-from app.rooms.places import Full
+from app.rooms.registry import Sessions
 from app.rooms.session import Session
 from app.routes import links, rendering
 from app.routes.docs import described
@@ -79,7 +79,9 @@ async def _joined(request: Request, given: Services, sim: AnySim, room: str, key
     session = None
     if request.method != "HEAD":  # nobody is there to use a session
         try:
-            session = _opened(given, sim, room, params, address_of(request), changes=bool(links.parts(query).params))
+            session = _opened(
+                given.sessions, sim, room, params, address_of(request), changes=bool(links.parts(query).params)
+            )
             params = session.params
         except GeometryError as error:  # of what no parameter's bounds exclude
             raise refusal_of(params, error) from None
@@ -106,13 +108,9 @@ async def _page(
     return rendering.viewer(request, sim, column, view, options, given.largest, steps, room, key)
 
 
-def _opened(given: Services, sim: AnySim, room: str, params: Params, address: str, *, changes: bool) -> Session:
-    known = given.sessions.find(sim, room)
-    try:
-        session = given.sessions.open(sim, room, params, address=address)
-    except Full as full:
-        given.bridge.refusals["full"] += 1
-        raise HTTPException(503, str(full), {"retry-after": str(full.wait)}) from None
+def _opened(sessions: Sessions, sim: AnySim, room: str, params: Params, address: str, *, changes: bool) -> Session:
+    known = sessions.find(sim, room)
+    session = sessions.open(sim, room, params, address=address)
     if known and changes:
         session.change(params.model_dump(), live=False)
     return session

@@ -8,16 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from geometry.rotations import shortest_turn
 from sims.euler_angles.names import PLACES
 from sims.euler_angles.params import EulerParams
 from sims.euler_angles.solution import arc_frames, solve, triple_of
+from sims.kit.pull import LEAST, pulled
 from sims.kit.sim import Step
 from sims.kit.types import Place
 
 Handle = Callable[[EulerParams, tuple[float, ...]], Mapping[str, Any]]
-LEAST = 1e-6
-"""Metres within which a place doesn't say a direction."""
 ARCS = ("/held_first", "/held_second", "/held_third")
 BODY = {"/held_nose": (1.0, 0.0, 0.0), "/held_wing": (0.0, 1.0, 0.0)}
 """Where nose and left wing are on the aircraft."""
@@ -62,11 +60,8 @@ def body(spot: Place) -> Handle:
 
 def hold(p: EulerParams, held: tuple[float, ...]) -> Mapping[str, Any]:
     """The same of any spot: where it is on the aircraft, then where in the world it goes."""
-    spot, place = np.reshape(held, (2, 3))
-    if min(spot @ spot, place @ place) < LEAST**2:
-        return {}
-    R = solve(p).R_progress
-    return {"progress": 3.0, **triple_of(p, shortest_turn(R @ spot, place) @ R)}
+    R = pulled(solve(p).R_progress, held)
+    return {} if R is None else {"progress": 3.0, **triple_of(p, R)}
 
 
 HANDLES: Mapping[str, Handle] = {

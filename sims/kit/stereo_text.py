@@ -6,6 +6,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from geometry.arrays import Array
 from geometry.rotations import matrix_to_axis_angle
 from sims.kit.calibration import Written, cameras, poses
 from sims.kit.stereo import CLOSEST, FARTHEST, LARGEST, SHORTEST, SMALLEST, Size, length
@@ -53,9 +54,14 @@ def chosen(found: list[Found], left: int, right: int) -> tuple[Found, Found]:
     return found[left - 1], found[right - 1]
 
 
+def between(left: Found, right: Found) -> Array:
+    """The pose (4, 4) of the left camera's axes in the right one's: x_right = R x_left + T."""
+    return np.asarray(np.array(right["pose"]) @ np.linalg.inv(left["pose"]))
+
+
 def calibrated(left: Found, right: Found) -> dict[str, Any]:
     """What of a state such a pair is: `own` and `own_size` of `sims.kit.stereo`. Raises ValueError in words."""
-    T = np.array(right["pose"]) @ np.linalg.inv(left["pose"])
+    T = between(left, right)
     axis, angle = matrix_to_axis_angle(T[:3, :3])
     own = *left["lens"], *right["lens"], *np.degrees(axis * angle).tolist(), *T[:3, 3].tolist()
     size = (*left["size"], *right["size"]) if left["size"] and right["size"] else None

@@ -10,8 +10,8 @@ import numpy as np
 
 from geometry import quaternion
 from geometry.arrays import Array
-from geometry.rotations import shortest_turn
 from sims.kit.params import LONGEST_VALUE
+from sims.kit.pull import LEAST, pulled
 from sims.kit.sim import Step
 from sims.kit.spelling import spell
 from sims.quaternion import ball, dial
@@ -21,8 +21,6 @@ from sims.quaternion.solution import solve
 DIGITS = 12
 """Decimals of the start to which all turns are taken back."""
 SECONDS = 1.2
-CLOSE = 1e-6
-"""Metres within which a place says no direction."""
 AFTER: dict[str, Any] = {"angle": 0.0, "t": 1.0}
 """With the turn made, the object stays where it is: there is no angle to go."""
 
@@ -36,18 +34,16 @@ def hold_tip(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
 def hold_angle(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The angle at which its arc ends where it is led to."""
     x, y, _ = (quaternion.to_matrix(solve(p).axis_frame).T @ place).tolist()
-    return {} if math.hypot(x, y) < CLOSE else dial.turned_to(p, x, y)
+    return {} if math.hypot(x, y) < LEAST else dial.turned_to(p, x, y)
 
 
 def hold_object(p: QuaternionParams, held: tuple[float, ...]) -> dict[str, Any]:
     """A spot of the object, in its own frame, was pulled to a place in the world: the one turn from start to there."""
-    spot, place = np.reshape(held, (2, 3))
-    if min(spot @ spot, place @ place) < CLOSE**2:
-        return {}
     s = solve(p)
-    R = s.interpolated.R
-    total = quaternion.from_matrix(shortest_turn(R @ spot, place) @ R)
-    q = quaternion.multiply(total, quaternion.conjugate(s.start))
+    R = pulled(s.interpolated.R, held)
+    if R is None:
+        return {}
+    q = quaternion.multiply(quaternion.from_matrix(R), quaternion.conjugate(s.start))
     return {"t": 1.0, **ball.turn_of(p, q if q @ s.q >= 0.0 else -q)}
 
 

@@ -18,7 +18,7 @@ from sims.kit import stereo_text
 from sims.kit.calibration import cameras
 from sims.kit.readout import quantity
 from sims.kit.stereo import length
-from sims.kit.stereo_text import Found, calibrated, chosen, taken
+from sims.kit.stereo_text import Found, between, calibrated, chosen, taken
 from sims.triangulation.holding import held_point, seen
 from sims.triangulation.params import OF_CURVE, OF_RIG, TriangulationParams
 from sims.triangulation.rig import Rig as Cameras
@@ -148,7 +148,7 @@ def parallel(p: TriangulationParams) -> dict[str, Any]:
 def _rectified(left: Found, right: Found) -> Rig | None:
     """The rig that two cameras are, if they are rectified. Raises ValueError in words."""
     (f, fy, cx, cy), (fx_right, fy_right, cx_right, cy_right) = left["lens"], right["lens"]
-    T = np.array(right["pose"]) @ np.linalg.inv(left["pose"])
+    T = between(left, right)
     x, y, z = (-T[:3, 3]).tolist()
     if not (
         _alike([f, fy, fx_right, fy_right])

@@ -108,19 +108,19 @@ function adopt(looked) {
 function drawLess(mutable, drawn) {
   const whole = mutable.requestRender;
   let late = 0;
-  const frames = (count) => {
+  const frame = () => {
     const { internal, invalidate } = mutable.scene.__r3f.root.getState();
-    if (internal.frames < count) invalidate(count); // what is asked for comes on top of what is still to be drawn
+    if (!internal.frames) invalidate(); // one that is still to be drawn shows this change too
   };
   const draw = () => {
     if (!sim.liveAt || performance.now() < sim.liveAt + LOADING) {
       whole();
       return;
     }
-    frames(1);
+    frame();
     requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
     clearTimeout(late);
-    late = setTimeout(() => frames(1), SETTLED);
+    late = setTimeout(frame, SETTLED);
   };
   Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
 }
