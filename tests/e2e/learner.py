@@ -120,7 +120,7 @@ class Sockets:
     def draw(self, address: str) -> None:
         """Receive the scene in the page's place; it must not have opened viser's websocket itself."""
         self.scene = SceneModel()
-        self._stand_in = connect(address, viser=True)
+        self._stand_in = connect(address, viser=True, unread=None)
         self._stand_in.send(encode_message(camera_message()))
 
     def forget(self) -> None:
