@@ -247,5 +247,3 @@ export function describeScene(words) {
   canvas.setAttribute("aria-roledescription", "3D scene");
   canvas.setAttribute("aria-label", words);
 }
-
-
