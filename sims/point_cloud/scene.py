@@ -24,6 +24,8 @@ from sims.point_cloud.solution import CloudSolution
 PIXELS = 350.0
 """Pixels, about, that the radius of the first view takes."""
 NOWHERE = np.zeros((1, 3), np.float32)
+OUT_OF_SIGHT = np.full((2, 3), -1e9, np.float32)
+"""Dots that are behind all that can be seen."""
 MARKED = 1.5
 """How much larger marked points are."""
 NAMES = 4
@@ -57,6 +59,9 @@ class CloudScene:
         self.about = About(stage)
         self.passed, self.dot = CellsInScene(stage, "/under", "ink"), 1.0
         self.ghost: Cloud = stage.cloud("/original", "ghost")
+        # With new colours viser's client gives up a cloud's material, and the browser compiles its program anew for the
+        # next one, unless something else is drawn with it.
+        stage.cloud("/kept", "page").draw(OUT_OF_SIGHT, np.zeros((2, 3), np.uint8))
         pale = PALE * np.array(rgb(stage.palette.ghost)) + (1.0 - PALE) * np.array(rgb(stage.palette.page))
         self._pale = before_film(pale[None])
         self._held = HELD * VIEWS["two-scans"].radius

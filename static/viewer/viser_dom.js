@@ -117,6 +117,9 @@ function drawLess(mutable, drawn) {
       whole();
       return;
     }
+    // viser takes what came while it draws, and React adds most of it after that frame: each change would be drawn twice,
+    // first without what it is about. Taken now, all of it is in the next frame.
+    mutable.drainMessageQueue?.();
     frame();
     requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
     clearTimeout(late);
@@ -244,5 +247,3 @@ export function describeScene(words) {
   canvas.setAttribute("aria-roledescription", "3D scene");
   canvas.setAttribute("aria-label", words);
 }
-
-
