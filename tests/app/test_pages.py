@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from html.parser import HTMLParser
@@ -26,6 +27,7 @@ from sims.kit.sim import Sim
 from tests.server import PATIENCE, Server
 
 AnySim = Sim[Any, Any]
+Found = Callable[[str], httpx.Response]
 PREFIX = "/geo/sim3"
 SIM = SIMS[0]
 ADDRESSES = {
@@ -121,6 +123,12 @@ def client(server: Server) -> Iterator[httpx.Client]:
         yield client
 
 
+@pytest.fixture(scope="module")
+def found(client: httpx.Client) -> Found:
+    """What is at an address, asked for once for all tests that only look at it."""
+    return functools.cache(client.get)
+
+
 def get(client: httpx.Client, address: str, status: int = 200) -> Document:
     answer = client.get(address)
     assert answer.status_code == status
@@ -132,8 +140,8 @@ def get(client: httpx.Client, address: str, status: int = 200) -> Document:
 
 
 @each_address
-def test_page_has_the_structure_that_people_find_their_way_by(client: httpx.Client, address: str) -> None:
-    page = Document(client.get(address).text)
+def test_page_has_the_structure_that_people_find_their_way_by(found: Found, address: str) -> None:
+    page = Document(found(address).text)
     assert page.one("html").attributes["lang"] == "en"
     assert "Sim3" in page.one("title").text
     assert page.one("main").attributes["id"] == "main"
@@ -147,17 +155,17 @@ def test_page_has_the_structure_that_people_find_their_way_by(client: httpx.Clie
 
 
 @each_address
-def test_everything_a_page_needs_is_here(client: httpx.Client, server: Server, address: str) -> None:
-    for wanted in Document(client.get(address).text).loaded():
+def test_everything_a_page_needs_is_here(found: Found, server: Server, address: str) -> None:
+    for wanted in Document(found(address).text).loaded():
         wanted = wanted.removeprefix(server.origin)  # what other sites ask for is whole
         assert wanted.startswith(PREFIX + "/")
-        answer = client.get(server.origin + wanted)
+        answer = found(server.origin + wanted)
         assert answer.status_code in (200, 307), wanted
 
 
 @each_address
-def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Server, address: str) -> None:
-    page = Document(client.get(address).text)
+def test_every_link_of_a_page_leads_somewhere(found: Found, server: Server, address: str) -> None:
+    page = Document(found(address).text)
     ids = {element.attributes.get("id") for element in page.elements}
     for link in page.links():
         if link.startswith("#"):
@@ -165,7 +173,7 @@ def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Serv
         elif not link.startswith("https://"):
             link = urljoin(PREFIX + address, link)
             assert link.startswith(PREFIX + "/")
-            assert client.get(server.origin + link).status_code in (200, 307), link
+            assert found(server.origin + link).status_code in (200, 307), link
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
