@@ -24,11 +24,11 @@ from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
-from tests.server import PATIENCE, Server
+from tests.app.conftest import PREFIX, Local
+from tests.server import Server
 
 AnySim = Sim[Any, Any]
 Found = Callable[[str], httpx.Response]
-PREFIX = "/geo/sim3"
 SIM = SIMS[0]
 ADDRESSES = {
     "launcher": "/",
@@ -109,18 +109,6 @@ class Document(HTMLParser):
         attributes = ("src", "srcset", "href")
         elements = self.all("img", "source", "script", "iframe", "link")
         return [element.attributes[a] for element in elements for a in attributes if a in element.attributes]
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[Server]:
-    with Server(SIM3_ROOT_PATH=PREFIX) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def client(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")
@@ -272,13 +260,10 @@ def test_page_for_a_frame_leaves_out_what_surrounds_it(client: httpx.Client) -> 
 
 
 def test_full_server_says_so_and_offers_to_try_again() -> None:
-    with (
-        Server(SIM3_MAX_SESSIONS="1") as server,
-        httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client,
-    ):
+    with Local(max_sessions=1) as local:
         address = f"/sims/{SIM.slug}/embed"
-        assert client.get(address, follow_redirects=True).status_code == 200
-        answer = client.get(address, follow_redirects=True)
+        assert local.http.get(address, follow_redirects=True).status_code == 200
+        answer = local.http.get(address, follow_redirects=True)
         assert answer.status_code == 503
         assert str(answer.url) in Document(answer.text).links()
 
