@@ -17,10 +17,14 @@ from typing import TypedDict
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-BLOCKING_STORAGE = "--test-third-party-cookie-phaseout"
-"""For tests: as schools have it set, frames of other sites have no cookies and no storage."""
-WITHOUT_COMPOSITING = "--disable-gpu-compositing"
-"""For tests: where WebGL is drawn in software, the page around it is put together in less time without it."""
+FOR_TESTS = (
+    # as schools have it set, frames of other sites have no cookies and no storage
+    "--test-third-party-cookie-phaseout",
+    # where WebGL is drawn in software, the page around it is put together in less time so, and half of a frame's pixels
+    # are there for smooth edges alone
+    "--disable-gpu-compositing",
+    "--webgl-antialiasing-mode=none",
+)
 QUIET = (
     "--disable-background-networking",
     "--disable-component-update",

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
+from playwright.sync_api import expect
 
 from sims.kit import child
-from tests.browser import BLOCKING_STORAGE, WITHOUT_COMPOSITING, LaunchOptions, launch_options
-from tests.server import shared_host
+from tests.browser import FOR_TESTS, LaunchOptions, launch_options
+from tests.server import PATIENCE, shared_host
 
 # The examples of a property are the same in every run, whatever else runs: `make fuzz` looks for others. How long one
 # takes says nothing on a busy machine.
@@ -31,10 +32,13 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+expect.set_options(timeout=1000 * PATIENCE)
+
+
 @pytest.fixture(scope="session")
 def browser_type_launch_args() -> LaunchOptions:
     """For pytest-playwright's own `browser`, which lives as long as the test run."""
-    return launch_options(WITHOUT_COMPOSITING, BLOCKING_STORAGE)
+    return launch_options(*FOR_TESTS)
 
 
 @pytest.fixture(scope="session", autouse=True)

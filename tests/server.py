@@ -78,10 +78,6 @@ def wait_for(happened: Callable[[], T], what: str, patience: float = PATIENCE) -
         time.sleep(min(0.005 + 0.03 * waited, 0.1))
 
 
-PROMPT = "from app import __main__; from app.rooms import telling; telling.STATE_INTERVAL = 0.05; __main__.main()"
-"""A server that tells a new state sooner than `python -m app` does: tests wait for little else."""
-
-
 class Server:
     """`python -m app` on a free port of this machine; settings as keyword arguments (`SIM3_…="…"`)."""
 

@@ -125,9 +125,9 @@ function drawLess(mutable, drawn) {
   Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
 }
 
-// Pixels of the screen for one of the page, within the bounds that viser's client has too.
+// Pixels of the screen for one of the page: fewer where the page is zoomed out, and never more than viser's client takes.
 function wholeResolution() {
-  return Math.min(Math.max(devicePixelRatio, 1), 2);
+  return Math.min(devicePixelRatio, 2);
 }
 
 // viser's client lowers its resolution when few frames come, as they do here whenever little changes; and each change of

@@ -24,14 +24,18 @@ from tests.server import PATIENCE, camera_message
 SLUG = "euler-angles"
 
 
-def connect(address: str, *, viser: bool, origin: str | None = None) -> ClientConnection:
-    """A websocket to the server; `address` begins with http."""
+def connect(address: str, *, viser: bool, origin: str | None = None, unread: int | None = 16) -> ClientConnection:
+    """A websocket to the server; `address` begins with http.
+
+    With so many messages unread it takes no more, as a page does that hangs; it then doesn't answer pings either.
+    """
     return websockets.sync.client.connect(
         address.replace("http", "ws", 1),
         subprotocols=[Subprotocol(PROTOCOL)] if viser else None,
         origin=None if origin is None else Origin(origin),
         compression=None,
         max_size=None,
+        max_queue=unread,
         open_timeout=PATIENCE,
         close_timeout=2,
         ping_interval=None,

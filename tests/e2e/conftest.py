@@ -10,10 +10,13 @@ import pytest
 from playwright.sync_api import Browser, ViewportSize
 
 from tests.e2e.learner import Learner, Witness
-from tests.server import PROMPT, Server
+from tests.server import Server
 
 DESK = ViewportSize(width=880, height=600)
-OPTIONS = {"color_scheme": "light", "reduced_motion": "no-preference"}
+EYES = {"color_scheme": "light", "reduced_motion": "no-preference"}
+"""What a page can be told anew at any time."""
+COARSE = {"device_scale_factor": 0.5}
+"""A quarter of the pixels: without a GPU they take most of the time, and where things are stays the same."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -24,26 +27,29 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def server() -> Iterator[Server]:
-    with Server("-c", PROMPT) as server:
+    with Server("-m", "tests.prompt") as server:
         yield server
 
 
 class Seats:
-    """Pages that were left, for whoever comes next with the same options: a new one takes as long as a short test."""
+    """Pages that were left, for whoever comes next: to open a sim in a new browser takes twice as long."""
 
     def __init__(self, browser: Browser, server: Server) -> None:
         self._browser = browser
         self._server = server
         self._free: dict[str, list[Learner]] = {}
 
-    def new(self, options: dict[str, Any]) -> Learner:
-        context = self._browser.new_context(**options)
+    def new(self, size: ViewportSize, options: dict[str, Any]) -> Learner:
+        context = self._browser.new_context(**{"viewport": size, **EYES, **COARSE, **options})
         return Learner(context.new_page(), Witness(context), self._server.url)
 
     @contextmanager
-    def taken(self, options: dict[str, Any], *, painted: bool) -> Iterator[Learner]:
-        free = self._free.setdefault(f"{painted} {sorted(options.items())}", [])
-        learner = free.pop() if free else self.new(options)
+    def taken(self, size: ViewportSize, options: dict[str, Any]) -> Iterator[Learner]:
+        fixed = {name: value for name, value in options.items() if name not in EYES}
+        free = self._free.setdefault(f"{sorted(fixed.items())}", [])
+        learner = free.pop() if free else self.new(size, fixed)
+        learner.page.set_viewport_size(size)
+        learner.page.emulate_media(**{name: options.get(name, usual) for name, usual in EYES.items()})
         yield learner
         learner.leave()
         free.append(learner)
@@ -63,31 +69,31 @@ class Classroom:
         self._stack = stack
         self._learners: list[Learner] = []
 
-    def enter(self, *, size: ViewportSize = DESK, **options: Any) -> Learner:
-        """A learner before an empty page, which nobody else had or gets; options are those of Playwright's contexts."""
-        learner = self._seats.new({"viewport": size, **OPTIONS, **options})
+    def enter(self, *, size: ViewportSize = DESK, painted: bool = True, **options: Any) -> Learner:
+        """A learner before an empty page; options are those of Playwright's contexts."""
+        learner = self._stack.enter_context(self._seats.taken(size, options))
+        learner.painted = painted
+        self._learners.append(learner)
+        return learner
+
+    def enter_alone(self, *, size: ViewportSize = DESK, **options: Any) -> Learner:
+        """A learner before an empty page, which nobody else had or gets: for what can't be undone in a browser."""
+        learner = self._seats.new(size, options)
         self._stack.callback(learner.page.context.close)
         self._stack.callback(learner.sockets.forget)
         self._learners.append(learner)
         return learner
 
-    def open(self, path: str, *, size: ViewportSize = DESK, **options: Any) -> Learner:
+    def open(self, path: str, **seat: Any) -> Learner:
         """A learner who has opened a sim: `euler-angles/embed?yaw=45`, or any address of one."""
-        learner = self._sit(size, options, painted=True)
+        learner = self.enter(**seat)
         learner.open(path)
         return learner
 
-    def open_column(self, path: str, *, size: ViewportSize = DESK, **options: Any) -> Learner:
+    def open_column(self, path: str, **seat: Any) -> Learner:
         """A learner who has opened a sim's address, without viser's client: all but what is painted in the scene."""
-        learner = self._sit(size, options, painted=False)
+        learner = self.enter(**seat)
         learner.open_column(path)
-        return learner
-
-    def _sit(self, size: ViewportSize, options: dict[str, Any], *, painted: bool) -> Learner:
-        seat = self._seats.taken({"viewport": size, **OPTIONS, **options}, painted=painted)
-        learner = self._stack.enter_context(seat)
-        learner.page.set_viewport_size(size)
-        self._learners.append(learner)
         return learner
 
     def complaints(self) -> list[str]:

@@ -40,6 +40,8 @@ T = TypeVar("T")
 PATIENCE = 60.0
 """Seconds after which a test gives up: software rendering on a busy machine is slow, and waiting costs nothing."""
 OPTIONS = ("view", "controls", "theme", "only")
+PAINTED, UNPAINTED = "//127.0.0.1:", "//localhost:"
+"""By the second name `tests.prompt` gives nobody viser's client."""
 THUMB = 16.0
 """Pixels that a slider's thumb takes of its track."""
 # What viser's client makes the browser say: at each start, at each drag in the scene, and, without a GPU, where there
@@ -118,7 +120,7 @@ class Sockets:
     def draw(self, address: str) -> None:
         """Receive the scene in the page's place; it must not have opened viser's websocket itself."""
         self.scene = SceneModel()
-        self._stand_in = connect(address, viser=True)
+        self._stand_in = connect(address, viser=True, unread=None)
         self._stand_in.send(encode_message(camera_message()))
 
     def forget(self) -> None:
@@ -177,10 +179,11 @@ class Learner:
     def __init__(self, page: Page, witness: Witness, url: str) -> None:
         self.page = page
         self.witness = witness
-        self.url = url
+        self.painted = True
+        """Whether viser's client paints the scene."""
         self.sockets = Sockets(page)
         self.frame: Frame = page.main_frame
-        self._painted = True
+        self._url = url
         self.addresses: list[str] = []
         """Every address that the page and its frames had."""
         page.on("framenavigated", lambda frame: self.addresses.append(frame.url))
@@ -188,9 +191,15 @@ class Learner:
 
     # ---- coming and going
 
+    @property
+    def url(self) -> str:
+        """Address of the launcher, without the slash at its end, by the name under which the scene is painted or not."""
+        return self._url if self.painted else self._url.replace(PAINTED, UNPAINTED)
+
     def open(self, path: str) -> None:
         """Open a sim's address and wait until it is live."""
-        self._go(path)
+        self.painted = True
+        self._go(path.replace(UNPAINTED, PAINTED))
         self.wait_live()
 
     def open_column(self, path: str) -> None:
@@ -198,16 +207,16 @@ class Learner:
 
         The column beside the scene works. What the scene is sent is received here, and nothing is painted.
         """
-        if self._painted:
-            self._painted = False
-            self.page.route("**/viser/**", lambda route: route.fulfill(body="", content_type="text/javascript"))
-        self._go(path)
+        self.painted = False
+        self._go(path.replace(PAINTED, UNPAINTED))
         self.wait_live()
 
     def leave(self) -> None:
         """Leave the page empty for the next learner."""
         self.page.mouse.move(0, 0)
+        self.page.unroute_all()
         self.page.goto("about:blank")
+        self.painted = True
         self.sockets.forget()
         self.addresses.clear()
         self.frame = self.page.main_frame
@@ -233,7 +242,7 @@ class Learner:
         self.wait_live()
 
     def wait_live(self) -> None:
-        if self._painted:
+        if self.painted:
             self.frame.wait_for_function("window.sim3?.live === true")
             self.until(lambda: bool(self.sockets.state and self.sockets.camera))
             return

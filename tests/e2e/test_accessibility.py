@@ -6,17 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Frame, Page
 
 from sims import SIMS
 from sims.kit.palette import DARK
+from tests.axe import findings
 from tests.e2e.conftest import Classroom
 from tests.e2e.picture import Picture
 
 INPUTS = ":is([data-slide], [data-box], [data-choice], [data-switch], [data-act]):visible"
 INPUT = "({ dataset: d }) => d.slide ?? d.box ?? d.choice ?? d.switch ?? d.act"
-TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 # Tab through the page: of each stop its name, and what its looks are with the focus.
 STOP = """() => {
   const stop = document.activeElement;
@@ -43,18 +42,10 @@ STOPS = """() => {
 }"""
 
 
-def axe(page: Page, rules: list[str] = TAGS) -> list[str]:
-    """What axe finds, in words; of all that has those tags, or by single rules.
-
-    The column is at its end, where the button that stays in sight covers nothing.
-    """
+def axe(page: Page) -> list[str]:
+    """What axe finds, with the column at its end, where the button that stays in sight covers nothing."""
     page.evaluate("document.querySelector('.s3-column')?.scrollTo(0, 1e6)")
-    found: dict[str, Any] = Axe().run(page, options={"runOnly": rules, "resultTypes": ["violations"]}).response
-    return [
-        f"{rule['id']} ({rule['impact']}): {node['target']} {node['html'][:200]}"
-        for rule in found["violations"]
-        for node in rule["nodes"]
-    ]
+    return findings(page)
 
 
 def walk(frame: Frame, page: Page) -> list[dict[str, Any]]:
@@ -107,7 +98,7 @@ def test_a_scene_is_for_everybody(classroom: Classroom) -> None:
 
 
 def test_a_sim_in_the_dark_is_for_everybody(classroom: Classroom) -> None:
-    learner = classroom.open("triangulation/embed?theme=dark&right_uv=410,210")
+    learner = classroom.open("triangulation/embed?theme=dark&right_uv=410,210", device_scale_factor=1)
     assert axe(learner.page) == []
     learner.open("euler-angles/embed?theme=dark&pitch=90")
     assert axe(learner.page) == []

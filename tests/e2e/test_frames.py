@@ -161,7 +161,7 @@ def test_a_wheel_scrolls_the_course_page_past_a_frame_until_the_scene_is_clicked
 
 @pytest.mark.parametrize("reason", ["This server saw Host “backend:8000”, but the page comes from elsewhere.", ""])
 def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom, reason: str) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter_alone()
     learner.witness.expect("WebSocket")
     learner.page.route_web_socket(
         re.compile("/s/"), lambda socket: socket.close(code=4403 if reason else 1011, reason=reason)
@@ -193,7 +193,7 @@ BLIND = """(() => {
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_without_webgl_all_but_the_scene_works(classroom: Classroom, theme: str) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter_alone()
     learner.witness.expect("WebGL", "THREE.")
     learner.witness.failures = ("Error creating WebGL context",)
     learner.page.add_init_script(BLIND)

@@ -169,7 +169,7 @@ def agree_on_file(learner: Learner) -> dict[str, Any]:
 
 
 def test_a_file_that_takes_long_is_given_up(classroom: Classroom, tmp_path: Path) -> None:
-    learner = classroom.enter(size=SMALL)
+    learner = classroom.enter_alone(size=SMALL)
     learner.open_column("point-cloud/embed?voxel_size=0.5")
     path = tmp_path / "long.xyz"
     path.write_text("0 0 0\n" * 100_000)

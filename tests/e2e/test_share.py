@@ -8,7 +8,7 @@ from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
-from playwright.sync_api import Frame, Route
+from playwright.sync_api import Frame
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import PAGE, CourseSite
@@ -23,11 +23,6 @@ nobody."""
 PRINTING = """import(document.querySelector("script[src$='/main.js']").src.replace("main.js", "handout.js"))
     .then(({ Handout }) => new Handout({ steps: [], embed: "" }).print())"""
 SANDBOX = 'sandbox="allow-scripts"'
-
-
-def unpainted(route: Route) -> None:
-    """In place of viser's client: nothing is painted."""
-    route.fulfill(body="", content_type="text/javascript")
 
 
 @pytest.fixture
@@ -104,7 +99,7 @@ def test_the_example_for_developers_works_wherever_it_is_put(classroom: Classroo
 
 @pytest.mark.parametrize("sandbox", ["", SANDBOX], ids=["of another site", "sandboxed"])
 def test_check_says_what_a_frame_allows(classroom: Classroom, course: CourseSite, sandbox: str) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter_alone()
     learner.page.add_init_script(NO_SHIFTS)
     frame = framed(learner, course, "/check", sandbox)
     frame.locator(".verdict[data-found=yes]").wait_for()
@@ -120,8 +115,7 @@ def test_check_says_what_a_frame_allows(classroom: Classroom, course: CourseSite
 def test_a_lesson_in_a_frame_moves_its_sim_and_takes_answers(
     classroom: Classroom, course: CourseSite, sandbox: str
 ) -> None:
-    learner = classroom.enter()
-    learner.page.route("**/viser/**", unpainted)
+    learner = classroom.enter(painted=False)
     learner.witness.expect("Blocked form submission")
     frame = framed(learner, course, "/sims/euler-angles?yaw=45", sandbox)
     learner.until(lambda: "yaw=45" in frame.child_frames[0].url)
@@ -140,15 +134,13 @@ def test_a_lesson_in_a_frame_moves_its_sim_and_takes_answers(
 def test_a_class_in_a_frame_is_joined_and_one_that_cant_be_opened_there_says_so(
     classroom: Classroom, course: CourseSite
 ) -> None:
-    teacher = classroom.enter()
-    teacher.page.route("**/viser/**", unpainted)
+    teacher = classroom.enter(painted=False)
     frame = framed(teacher, course, "/class?sim=euler-angles&yaw=45", "")
     frame.get_by_role("button", name="Open the class").click()
     teacher.until(lambda: "yaw=45" in frame.child_frames[0].url)
     code = frame.locator(".invite .code").inner_text()
 
-    learner = classroom.enter()
-    learner.page.route("**/viser/**", unpainted)
+    learner = classroom.enter(painted=False)
     learner.witness.expect("Blocked form submission")
     frame = framed(learner, course, "/class", SANDBOX)
     frame.get_by_role("button", name="Open the class").click()
@@ -173,7 +165,7 @@ def test_a_class_in_a_frame_is_joined_and_one_that_cant_be_opened_there_says_so(
 
 
 def test_check_says_what_to_ask_for(classroom: Classroom) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter_alone()
     page = learner.page
     learner.witness.expect("WebSocket")
     page.route_web_socket("**/check/socket", lambda socket: socket.close(code=1011))
