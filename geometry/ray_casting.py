@@ -50,14 +50,14 @@ def cast(origins: npt.ArrayLike, directions: npt.ArrayLike, bodies: Sequence[Bod
     """
     d = as_finite_array("directions", directions, 3)
     start = as_finite_array("origins", origins, 3)
-    o = np.broadcast_to(start, d.shape)
+    o = np.broadcast_to(start, d.shape) if start.ndim > 1 else start[None]
     hits = Hits(np.full(len(d), np.inf), np.zeros_like(d), np.full(len(d), -1, np.intp))
     for number, body in enumerate(bodies):
         rows = _may_meet(start, d, body)
-        distance, normals = _meet(o[rows], d[rows], body)
-        nearer = distance < hits.distance[rows]
+        met = _meet(o if len(o) == 1 else o[rows], d[rows], body)
+        nearer = np.flatnonzero(met.distance < hits.distance[rows])
         rows = rows[nearer]
-        hits.distance[rows], hits.normals[rows], hits.body[rows] = distance[nearer], normals[nearer], number
+        hits.distance[rows], hits.normals[rows], hits.body[rows] = met.distance[nearer], met.normals(nearer), number
     return hits
 
 
@@ -69,9 +69,28 @@ def _may_meet(o: Array, d: Array, body: Body) -> npt.NDArray[np.intp]:
     return np.flatnonzero((beyond <= 0.0) | (along >= np.sqrt(np.maximum(beyond, 0.0)) * (1.0 - 1e-9)))
 
 
+@dataclass(frozen=True, eq=False)
+class _Met:
+    """Where rays meet a body, in its scaled frame where it is a cube, a cylinder or a ball."""
+
+    body: Body
+    p: Array
+    v: Array
+    distance: Array
+    flat: npt.NDArray[np.intp]
+    """Along which axis the face is flat that is met, or −1."""
+
+    def normals(self, rows: npt.NDArray[np.intp]) -> Array:
+        """Unit normals in the world of some of the rays, all of which meet it."""
+        point = (self.p if len(self.p) == 1 else self.p[rows]) + self.distance[rows, None] * self.v[rows]
+        local = _normal(point, self.flat[rows], self.body.shape) / self.body.half
+        normals = local @ self.body.T_world_body[:3, :3].T
+        return normals / norm(normals)[:, None]
+
+
 @np.errstate(divide="ignore", invalid="ignore")
-def _meet(o: Array, d: Array, body: Body) -> tuple[Array, Array]:
-    """Distances and normals, in the world, in the body's scaled frame where it is a cube, a cylinder or a ball."""
+def _meet(o: Array, d: Array, body: Body) -> _Met:
+    """Rays from origins, one (1, 3) for all or one (N, 3) for each."""
     R, t = body.T_world_body[:3, :3], body.T_world_body[:3, 3]
     p, v = ((o - t) @ R) / body.half, (d @ R) / body.half
     inside = {"box": _cube, "cylinder": _cylinder, "ellipsoid": _ball}[body.shape](p, v)
@@ -79,10 +98,7 @@ def _meet(o: Array, d: Array, body: Body) -> tuple[Array, Array]:
     starts_outside = enter > 0.0
     distance = np.where(starts_outside, enter, leave)
     distance = np.where((enter <= leave) & (distance > 0.0), distance, np.inf)
-    flat = np.where(starts_outside, axis_in, axis_out)
-    local = _normal(p + np.where(np.isfinite(distance), distance, 0.0)[:, None] * v, flat, body.shape) / body.half
-    normals = local @ R.T
-    return distance, normals / norm(normals)[:, None]
+    return _Met(body, p, v, distance, np.where(starts_outside, axis_in, axis_out))
 
 
 Span = tuple[Array, Array, npt.NDArray[np.intp], npt.NDArray[np.intp]]
@@ -95,13 +111,13 @@ def _cube(p: Array, v: Array) -> Span:
     parallel_outside = (v == 0.0) & (np.abs(p) > 1.0)
     low[parallel_outside] = np.inf
     enter, leave = np.argmax(low, axis=1), np.argmin(high, axis=1)
-    rows = np.arange(len(p))
+    rows = np.arange(len(v))
     return low[rows, enter], high[rows, leave], enter, leave
 
 
 def _ball(p: Array, v: Array) -> Span:
     low, high, none = _roots(np.vecdot(v, v), np.vecdot(p, v), np.vecdot(p, p) - 1.0)
-    side = np.full(len(p), -1)
+    side = np.full(len(v), -1)
     return np.where(none, np.inf, low), np.where(none, -np.inf, high), side, side
 
 

@@ -105,14 +105,14 @@ class SceneNode:
     def pose(self) -> Array:
         """Pose in the parent, 4×4. As in three.js the quaternion is taken as it is, unit or not."""
         w, x, y, z = self.wxyz
-        T = np.eye(4)
-        T[:3, :3] = [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        a, b, c = self.position
+        rows = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), a],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), b],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), c],
+            [0, 0, 0, 1],
         ]
-        T[:3, 3] = self.position
-        return T
+        return np.array(rows, dtype=float)
 
     def array(self, prop: str) -> npt.NDArray[Any]:
         """An array property, with one entry a row where its shape is known."""
@@ -170,7 +170,8 @@ class SceneModel:
         """The node that is shown under a name."""
         if name not in self._variants:
             raise KeyError(f"no node {name!r}; there are {', '.join(self.names)}")
-        return max(self._variants[name].values(), key=lambda node: node.rank)
+        variants = self._variants[name].values()
+        return next(iter(variants)) if len(variants) == 1 else max(variants, key=lambda node: node.rank)
 
     def world_pose(self, name: str) -> Array:
         """Pose of a node in the world, 4×4: the product of the poses of its ancestors and its own."""
@@ -311,6 +312,8 @@ def _differences(where: str, a: Any, b: Any, within: float) -> Iterator[str]:
             else:
                 yield from _differences(f"{where}{key}: ", a[key], b[key], within)
     elif isinstance(a, np.ndarray) or isinstance(b, np.ndarray) or _numbers(a, b):
+        if _same(a, b):
+            return
         p, q = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
         if p.shape != q.shape:
             yield f"{where}{p.shape} and {q.shape}"
@@ -318,6 +321,15 @@ def _differences(where: str, a: Any, b: Any, within: float) -> Iterator[str]:
             yield f"{where}differ by {gap:g}" + (f": {a!r} and {b!r}" if p.size <= 4 else "")
     elif a != b:
         yield f"{where}{a!r} and {b!r}"
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two numbers, lists or arrays are surely the same, found out quickly; NaN is never."""
+    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+        return np.array_equal(a, b)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(x == y for x, y in zip(a, b, strict=True))
+    return not isinstance(a, np.ndarray) and not isinstance(b, np.ndarray) and bool(a == b)
 
 
 def _numbers(a: Any, b: Any) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import os
 import re
 import subprocess
@@ -11,7 +10,7 @@ import tomllib
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-from tests.test_imports import OWN, ROOT, imports, parse, sources
+from tests.test_imports import OWN, ROOT, imports_of, said, sources
 
 
 def normal(name: str) -> str:
@@ -28,8 +27,7 @@ def imported() -> dict[str, str]:
     """Other people's packages that what runs imports, and where."""
     found: dict[str, str] = {}
     for path in sources("geometry", "sims", "app"):
-        tree: ast.Module = parse(path)
-        for line, name in imports(tree, path.relative_to(ROOT).parent.parts):
+        for line, name in imports_of(path):
             top = name.split(".")[0]
             if top not in OWN and top not in sys.stdlib_module_names:
                 found.setdefault(top, f"{path.relative_to(ROOT)}:{line}")
@@ -37,9 +35,9 @@ def imported() -> dict[str, str]:
 
 
 def test_what_is_imported_when_the_sims_run_is_declared() -> None:
-    known, allowed = packages_distributions(), declared()
-    assert "numpy" in imported()
-    for name, place in imported().items():
+    known, allowed, found = packages_distributions(), declared(), imported()
+    assert "numpy" in found
+    for name, place in found.items():
         if "/script_" in place:  # runs where a learner has its libraries
             continue
         assert {normal(d) for d in known.get(name, [name])} & allowed, f"{place} imports {name}, which isn't declared"
@@ -49,11 +47,9 @@ def test_the_image_holds_what_the_server_reads() -> None:
     """`ROOT / "name"` in what runs is a file or folder of the checkout; .dockerignore says which are in the image."""
     held = {line[1:] for line in (ROOT / ".dockerignore").read_text("utf-8").splitlines() if line.startswith("!")}
     read = {
-        str(node.right.value): f"{path.relative_to(ROOT)}:{node.lineno}"
+        name: f"{path.relative_to(ROOT)}:{line}"
         for path in sources("geometry", "sims", "app")
-        for node in ast.walk(parse(path))
-        if isinstance(node, ast.BinOp) and isinstance(node.left, ast.Name) and node.left.id == "ROOT"
-        if isinstance(node.right, ast.Constant) and isinstance(node.right.value, str)
+        for line, name in said(path).at_root
     }
     assert "pyproject.toml" in read
     assert {*read} <= held, f"not in the image: {[f'{name} ({read[name]})' for name in {*read} - held]}"

@@ -5,14 +5,17 @@ from __future__ import annotations
 import ast
 import functools
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple, TypeVar
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("geometry", "sims", "app")
 OWN = {*PACKAGES, "tests", "benchmarks"}
+T = TypeVar("T")
 
 # What each package may not import; geometry has a list of what it may.
 FORBIDDEN = {
@@ -38,21 +41,18 @@ def name_of(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
-@functools.cache
-def parse(path: Path) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"))
+def in_a_new_thread(work: Callable[[], T]) -> T:
+    """After deep recursion in other tests, CPython 3.11's parser may fail in their thread."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(work).result()
 
 
-for _path in sources("geometry", "sims", "app", "tests"):
-    parse(_path)  # now: after deep recursion in other tests, CPython 3.11's parser may fail
-
-
-def imports(tree: ast.AST, package: tuple[str, ...]) -> Iterator[tuple[int, str]]:
+def imports(nodes: Iterable[ast.AST], package: tuple[str, ...]) -> Iterator[tuple[int, str]]:
     """Line and full dotted name of each import, relative ones resolved against `package`.
 
     `from a import b` counts as `a.b`: b may be a module.
     """
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from ((node.lineno, alias.name) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -61,17 +61,45 @@ def imports(tree: ast.AST, package: tuple[str, ...]) -> Iterator[tuple[int, str]
             yield from ((node.lineno, f"{module}.{alias.name}") for alias in node.names)
 
 
+class Said(NamedTuple):
+    """What the tests ask of a module."""
+
+    imports: list[tuple[int, str]]
+    own: set[str]
+    """Names that it defines itself."""
+    private: list[tuple[int, str]]
+    """Line and name of each `x._name`, whoever defines that."""
+    texts: list[tuple[int, str]]
+    """Line and text of what stands alone, as docstrings do."""
+    at_root: list[tuple[int, str]]
+    """Line and name of each `ROOT / "name"`."""
+
+
+@functools.cache
+def said(path: Path) -> Said:
+    """Read once for all tests. The trees aren't kept: all of them slow every collection of garbage down."""
+    text = path.read_text(encoding="utf-8")
+    nodes = in_a_new_thread(lambda: list(ast.walk(ast.parse(text))))
+    return Said(
+        list(imports(nodes, path.relative_to(ROOT).parts[:-1])),
+        set(own_names(nodes)),
+        list(private_attributes(nodes)),
+        list(texts(nodes)),
+        list(at_root(nodes)),
+    )
+
+
 def imports_of(path: Path) -> list[tuple[int, str]]:
-    return list(imports(parse(path), path.relative_to(ROOT).parts[:-1]))
+    return said(path).imports
 
 
 def is_private(name: str) -> bool:
     return name.startswith("_") and not (name.startswith("__") and name.endswith("__"))
 
 
-def own_names(tree: ast.AST) -> Iterator[str]:
+def own_names(nodes: Iterable[ast.AST]) -> Iterator[str]:
     """Names that a module defines itself: functions, classes, variables, fields, attributes of self."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             yield node.name
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
@@ -82,19 +110,39 @@ def own_names(tree: ast.AST) -> Iterator[str]:
 
 @functools.cache
 def all_own_names() -> set[str]:
-    return {name for path in sources(*sorted(OWN)) for name in own_names(parse(path))}
+    return {name for path in sources(*sorted(OWN)) for name in said(path).own}
 
 
 def is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id in ("self", "cls")
 
 
-def foreign_private_attributes(tree: ast.AST, own: set[str]) -> Iterator[tuple[int, str]]:
-    """Line and name of each `x._name` where no module of ours defines `_name`."""
-    attributes = (node for node in ast.walk(tree) if isinstance(node, ast.Attribute))
+def texts(nodes: Iterable[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Line and text of each string that is a statement."""
+    for node in nodes:
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            yield node.lineno, node.value.value
+
+
+def at_root(nodes: Iterable[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Line and name of each `ROOT / "name"`."""
+    for node in nodes:
+        match node:
+            case ast.BinOp(left=ast.Name(id="ROOT"), right=ast.Constant(value=str(name))):
+                yield node.lineno, name
+
+
+def private_attributes(nodes: Iterable[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Line and name of each `x._name`, but of `self._name`."""
+    attributes = (node for node in nodes if isinstance(node, ast.Attribute))
     for node in attributes:
-        if is_private(node.attr) and not is_self(node.value) and node.attr not in own | PUBLIC_ALL_THE_SAME:
+        if is_private(node.attr) and not is_self(node.value) and node.attr not in PUBLIC_ALL_THE_SAME:
             yield node.lineno, node.attr
+
+
+def foreign(attributes: list[tuple[int, str]], own: set[str]) -> list[tuple[int, str]]:
+    """Those that no module of ours defines."""
+    return [(line, name) for line, name in attributes if name not in own]
 
 
 def uses_viser_internals(module: str) -> bool:
@@ -102,31 +150,37 @@ def uses_viser_internals(module: str) -> bool:
     return first == "viser" and (rest[:1] == ["infra"] or any(map(is_private, rest)))
 
 
-@pytest.mark.parametrize("path", sources("geometry"), ids=name_of)
-def test_geometry_imports_only_numpy_scipy_and_the_standard_library(path: Path) -> None:
-    tops = {(line, module.split(".")[0]) for line, module in imports_of(path)}
-    wrong = [(line, top) for line, top in tops if top not in GEOMETRY_ALLOWED - INPUT_OUTPUT]
-    assert not wrong, (
-        f"{name_of(path)} may import NumPy, SciPy and the standard library without input or output: {wrong}"
-    )
+def test_geometry_imports_only_numpy_scipy_and_the_standard_library() -> None:
+    allowed = GEOMETRY_ALLOWED - INPUT_OUTPUT
+    wrong = [
+        f"{name_of(path)}:{line} {module}"
+        for path in sources("geometry")
+        for line, module in imports_of(path)
+        if module.split(".")[0] not in allowed
+    ]
+    assert not wrong, f"geometry may import NumPy, SciPy and the standard library without input or output: {wrong}"
 
 
-@pytest.mark.parametrize("path", sources(*FORBIDDEN), ids=name_of)
-def test_imports_point_one_way(path: Path) -> None:
-    package = path.relative_to(ROOT).parts[0]
-    wrong = [(line, module) for line, module in imports_of(path) if module.split(".")[0] in FORBIDDEN[package]]
-    assert not wrong, f"{name_of(path)} may not import {sorted(FORBIDDEN[package])}: {wrong}"
+@pytest.mark.parametrize("package", FORBIDDEN)
+def test_imports_point_one_way(package: str) -> None:
+    wrong = [
+        f"{name_of(path)}:{line} {module}"
+        for path in sources(package)
+        for line, module in imports_of(path)
+        if module.split(".")[0] in FORBIDDEN[package]
+    ]
+    assert not wrong, f"{package} may not import {sorted(FORBIDDEN[package])}: {wrong}"
 
 
-@pytest.mark.parametrize("path", sources(*sorted(OWN)), ids=name_of)
-def test_private_names_of_viser_stay_in_one_module(path: Path) -> None:
-    if name_of(path) in MAY_USE_PRIVATE_NAMES:
-        return
-    modules = [(line, module) for line, module in imports_of(path) if uses_viser_internals(module)]
-    attributes = list(foreign_private_attributes(parse(path), all_own_names()))
-    assert not modules + attributes, (
-        f"{name_of(path)} uses private names; only sims/kit/viser_internals.py may: {modules + attributes}"
-    )
+@pytest.mark.parametrize("folder", sorted(OWN))
+def test_private_names_of_viser_stay_in_one_module(folder: str) -> None:
+    wrong = []
+    for path in sources(folder):
+        modules = [(line, module) for line, module in imports_of(path) if uses_viser_internals(module)]
+        found = modules + foreign(said(path).private, all_own_names())
+        if name_of(path) not in MAY_USE_PRIVATE_NAMES:
+            wrong += [f"{name_of(path)}:{line} {name}" for line, name in found]
+    assert not wrong, f"private names, which only sims/kit/viser_internals.py may use: {wrong}"
 
 
 @pytest.mark.parametrize(
@@ -141,7 +195,7 @@ def test_private_names_of_viser_stay_in_one_module(path: Path) -> None:
     ],
 )
 def test_imports_are_read_as_full_names(source: str, expected: list[str]) -> None:
-    assert [module for _, module in imports(ast.parse(source), ("sims", "kit"))] == expected
+    assert [module for _, module in imports(ast.walk(ast.parse(source)), ("sims", "kit"))] == expected
 
 
 @pytest.mark.parametrize(
@@ -160,4 +214,4 @@ def test_internals_of_viser_are_recognised(module: str, internal: bool) -> None:
 
 def test_private_attributes_of_others_are_recognised() -> None:
     tree = ast.parse("node._impl\nself._mine\nother._mine\nrow._asdict()\nx.__dict__\nviser._client.f")
-    assert list(foreign_private_attributes(tree, {"_mine"})) == [(1, "_impl"), (6, "_client")]
+    assert foreign(list(private_attributes(ast.walk(tree))), {"_mine"}) == [(1, "_impl"), (6, "_client")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -31,6 +32,7 @@ def blocks(rules: list[Any]) -> Iterator[list[Any]]:
             yield tinycss2.parse_blocks_contents(rule.content, skip_comments=True, skip_whitespace=True)
 
 
+@functools.cache
 def parsed(sheet: Path) -> list[list[Any]]:
     text = sheet.read_text(encoding="utf-8")
     return list(blocks(tinycss2.parse_stylesheet(text, skip_comments=True, skip_whitespace=True)))

@@ -7,42 +7,38 @@ dies costs the one file, and the next one is read by the next child.
 
 read("package.module:function", name, data, limits=Limits(…), …)    # function(name, data, …) -> values by name
 
-The pipe carries, both ways, the length of a head, the head as JSON, and bytes behind it.
+What runs in the child stands in `child_process`.
 """
 
 from __future__ import annotations
 
-import importlib
 import io
 import itertools
-import json
 import logging
 import math
 import os
 import signal
-import struct
 import subprocess
 import sys
 import threading
-import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from sims.kit import child_process
+from sims.kit.child_process import bytes_of, receive, send
 from sims.kit.progress import goes_on
 
 log = logging.getLogger("sim3")
 AT_ONCE = 2
 """Children: while one is busy with a slow file, for up to its whole time limit, the other one reads the others'."""
-GIVES_WAY = 10
-"""Steps of niceness, as the server's own workers."""
 ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")
 """Environment variables that keep libraries from starting threads of their own, which would take memory and cores."""
 KEPT = ("PATH", "LD_LIBRARY_PATH", "SYSTEMROOT", "TMPDIR", "TEMP", "TMP")
@@ -51,8 +47,6 @@ STARTS = 60.0
 """Seconds that a child may take to start, on a busy machine."""
 WAITS = 0.1
 """Seconds between two looks whether somebody still waits for a file."""
-_LENGTH = struct.Struct("<I")
-_LONGEST_HEAD = 1_000_000
 _LONGEST_WORDS = 1_000
 _MOST_AXES = 4
 _KINDS = {np.dtype(kind).str for kind in "?bBhHiIqQefd"}
@@ -154,18 +148,18 @@ class _Trouble(Exception):
 
 
 class _Child:
-    """One process, and the pipes to it. Starts when made; raises _Trouble if it doesn't."""
+    """One process, and the pipes to it. Starts when made, with what `module` needs; raises _Trouble if it doesn't."""
 
-    def __init__(self) -> None:
+    def __init__(self, module: str) -> None:
         self._late = False
         self._jobs = itertools.count(1)
-        code = "import sys; sys.path[:] = sys.argv[1:]; from sims.kit import child; child.serve()"
         path = [entry or os.getcwd() for entry in sys.path]
         environment = {name: os.environ[name] for name in KEPT if name in os.environ} | dict.fromkeys(ALONE, "1")
         try:
             self._process = subprocess.Popen(
-                [sys.executable, "-IB", "-c", code, *path], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                env=environment, creationflags=getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0),
+                [sys.executable, "-IB", child_process.__file__, module, *path],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment,
+                creationflags=getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0),
             )  # fmt: skip
         except OSError as error:
             raise _Trouble("start", str(error)) from None
@@ -203,7 +197,7 @@ class _Child:
         }  # fmt: skip
 
         def conversation() -> Values:
-            _send(self._to, head, data)
+            send(self._to, head, data)
             return self._answer(number, job.limits)
 
         return self._within(job.limits.seconds, conversation)
@@ -231,7 +225,7 @@ class _Child:
 
     def _answer(self, number: int, limits: Limits) -> Values:
         try:
-            head = _receive(self._from)
+            head = receive(self._from)
             if head["job"] != number:
                 raise ValueError("another job's answer")
             if "refusal" in head:
@@ -281,7 +275,7 @@ class _Children:
         child = None
         sound = False
         try:
-            child = self._one()
+            child = self._one(job.function.partition(":")[0])
             if self._pool is not pool:  # ended while the child started
                 raise _Trouble("end", "")
             values = child.run(job, data)
@@ -301,7 +295,7 @@ class _Children:
                 self._back(child, pool, sound)
         return values
 
-    def _one(self) -> _Child:
+    def _one(self, module: str) -> _Child:
         """An idle child that lives, or a new one. Raises _Trouble."""
         while True:
             with self._lock:
@@ -311,7 +305,7 @@ class _Children:
             if child.lives:
                 return child
             self._forget(child)
-        child = _Child()
+        child = _Child(module)
         with self._lock:
             self._all.add(child)
         return child
@@ -332,29 +326,6 @@ class _Children:
 _children = _Children()
 
 
-def _send(pipe: IO[bytes], head: Mapping[str, Any], *pieces: bytes | memoryview) -> None:
-    text = json.dumps(head).encode()
-    pipe.write(_LENGTH.pack(len(text)) + text)
-    for piece in pieces:
-        pipe.write(piece)
-    pipe.flush()
-
-
-def _receive(pipe: IO[bytes]) -> Any:
-    """A head. Raises EOFError where the pipe ends, ValueError or RecursionError where it isn't one."""
-    (length,) = _LENGTH.unpack(_exactly(pipe, _LENGTH.size))
-    if length > _LONGEST_HEAD:
-        raise ValueError("too long a head")
-    return json.loads(_exactly(pipe, length))
-
-
-def _exactly(pipe: IO[bytes], size: int) -> bytes:
-    data = pipe.read(size)
-    if len(data) < size:
-        raise EOFError
-    return data
-
-
 def _described(kind: str, shape: list[int]) -> tuple[np.dtype[Any], tuple[int, ...]]:
     """Type and shape of an array that is announced. Raises ValueError or TypeError for what no child may send."""
     if kind not in _KINDS or len(shape) > _MOST_AXES or not all(type(n) is int and 0 <= n < 2**40 for n in shape):
@@ -364,104 +335,6 @@ def _described(kind: str, shape: list[int]) -> tuple[np.dtype[Any], tuple[int, .
 
 def _array(pipe: io.BufferedReader, dtype: np.dtype[Any], shape: tuple[int, ...]) -> npt.NDArray[Any]:
     array = np.empty(shape, dtype)
-    if pipe.readinto(_bytes(array)) < array.nbytes:
+    if pipe.readinto(bytes_of(array)) < array.nbytes:
         raise EOFError
     return array
-
-
-def _bytes(array: npt.NDArray[Any]) -> memoryview:
-    return array.reshape(-1).view(np.uint8).data
-
-
-# What follows runs in the child.
-
-
-def serve() -> None:
-    """Answer until the server ends. What anything prints goes nowhere: the pipe is this function's alone."""
-    asked, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    nothing = os.open(os.devnull, os.O_RDWR)
-    os.dup2(nothing, 0)
-    os.dup2(2, 1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal: the server ends its children itself
-    _give_way()
-    importlib.import_module("sims")  # now, for all that files need
-    _send(answers, {"job": 0, "values": {}, "arrays": {}})
-    os.dup2(nothing, 1)
-    os.dup2(nothing, 2)
-    with suppress(EOFError, BrokenPipeError):
-        while True:
-            asks = _receive(asked)
-            _answer(answers, asks, _exactly(asked, asks["size"]))
-
-
-def _give_way() -> None:
-    """Let the server go first; and when the machine's memory ends, let it be the child that is killed."""
-    if sys.platform != "win32":
-        import resource
-
-        with suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, 0, os.getpriority(os.PRIO_PROCESS, os.getppid()) + GIVES_WAY)
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with suppress(OSError):
-        Path("/proc/self/oom_score_adj").write_text("1000")
-
-
-def _answer(answers: IO[bytes], asks: Mapping[str, Any], data: bytes) -> None:
-    head: dict[str, Any] = {"job": asks["job"]}
-    pieces: list[memoryview] = []
-    try:
-        module, _, name = asks["function"].partition(":")
-        function = getattr(importlib.import_module(module), name)
-        with _limited(asks["memory"], asks["seconds"]):
-            try:
-                values = function(asks["name"], data, **asks["arguments"])
-            except ValueError as error:
-                head["refusal"] = str(error)
-            else:
-                arrays = {key: _plain(value) for key, value in values.items() if isinstance(value, np.ndarray)}
-                others = {key: value for key, value in values.items() if key not in arrays}
-                json.dumps(others)
-                head |= {"values": others, "arrays": {key: (a.dtype.str, a.shape) for key, a in arrays.items()}}
-                pieces = [_bytes(array) for array in arrays.values()]
-    except BaseException as error:  # also what Rust calls a panic
-        head |= {"failure": _where(error), "memory": isinstance(error, MemoryError)}
-    _send(answers, head, *pieces)
-
-
-@contextmanager
-def _limited(memory: int, seconds: float) -> Iterator[None]:
-    """Within it this process takes no more memory than so many bytes above what it has, and ends when it is late.
-
-    The server ends it a second before that, if the server still lives. Where a system has no such limits, its time is
-    all that is bounded.
-    """
-    if sys.platform == "win32":
-        yield
-        return
-    import resource
-
-    _, most = resource.getrlimit(resource.RLIMIT_AS)
-    with suppress(OSError, ValueError):  # of systems that don't say, or don't limit
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
-        allowed = pages * resource.getpagesize() + memory
-        resource.setrlimit(
-            resource.RLIMIT_AS, (allowed if most == resource.RLIM_INFINITY else min(allowed, most), most)
-        )
-    signal.alarm(math.ceil(seconds) + 1)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        with suppress(OSError, ValueError):
-            resource.setrlimit(resource.RLIMIT_AS, (most, most))
-
-
-def _plain(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """In one piece, and in this machine's order of bytes."""
-    return np.ascontiguousarray(array, array.dtype.newbyteorder("="))
-
-
-def _where(error: BaseException) -> str:
-    """What it was and where, for the log: without its words, which may be the file's."""
-    frames = traceback.extract_tb(error.__traceback__)
-    return f"{type(error).__name__} in {Path(frames[-1].filename).name}, line {frames[-1].lineno}"

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import math
 from collections import deque
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, redirect_stdout
@@ -27,14 +28,18 @@ from typing import Any, get_type_hints
 from unittest import mock
 
 import numpy as np
+import numpy.typing as npt
 import viser
 import websockets.asyncio.server
+from viser import _scene_handles
 from viser._assignable_props_api import AssignablePropsBase
+from viser._scene_api import cast_vector
 from viser.infra import WebsockClientConnection
 from websockets.exceptions import ConnectionClosedOK
 
 from sims.kit.outbox import Change, Outbox
 
+Array = npt.NDArray[np.float64]
 NOBODY: Any = -1
 """Number of a client without a browser; viser counts its own from 0."""
 PROTOCOL = f"viser-v{viser.__version__}"
@@ -46,6 +51,18 @@ def _hints(props: type) -> dict[str, Any]:
 
 
 AssignablePropsBase._prop_hints = property(lambda self: _hints(type(self._impl.props)))  # type: ignore[arg-type, assignment, method-assign]
+
+
+def _set_pose_vector(current: Array, value: Any, length: int, queue: Any, make_message: Any) -> None:
+    """As viser's own, whose `np.allclose` takes a fifth of the time in which a scene is made."""
+    new = cast_vector(value, length)
+    if all(a == b or abs(a - b) <= 1e-8 + 1e-5 * abs(b) < math.inf for a, b in zip(new, current.tolist(), strict=True)):
+        return
+    current[:] = new
+    queue(make_message(new))
+
+
+_scene_handles._set_pose_vector = _set_pose_vector
 
 
 class Wire:

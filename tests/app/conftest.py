@@ -1,4 +1,4 @@
-"""The application in this process, served on a port: its insides can be looked at."""
+"""The application in this process, served on a port: its insides can be looked at. And one in a process of its own."""
 
 from __future__ import annotations
 
@@ -19,7 +19,19 @@ from app.routes.services import Services
 from app.settings import Settings
 from app.web import create_app
 from sims.kit.viser_internals import ViserHost
-from tests.server import PATIENCE, wait_for
+from tests.server import PATIENCE, Server, wait_for
+
+PREFIX = "/geo/sim3"
+LESSON = """---
+title: Our own lesson
+summary: Turn it.
+sim: euler-angles
+---
+
+## What to see
+
+Some words.
+"""
 
 
 class Local:
@@ -122,3 +134,19 @@ def local() -> Iterator[Local]:
 def http(local: Local) -> httpx.Client:
     """For requests to it."""
     return local.http
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A process with a prefix and a lesson of somebody's own, for all tests that only look at its pages."""
+    folder = tmp_path_factory.mktemp("lessons")
+    (folder / "ours.md").write_text(LESSON)
+    with Server(SIM3_ROOT_PATH=PREFIX, SIM3_LESSON_DIR=str(folder)) as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def client(server: Server) -> Iterator[httpx.Client]:
+    """For requests to it."""
+    with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client:
+        yield client

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from html.parser import HTMLParser
@@ -22,11 +23,12 @@ from app.settings import ROOT
 from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
+from tests.app.conftest import PREFIX, Local
 from tests.axe import COLOURS, findings
-from tests.server import PATIENCE, Server
+from tests.server import Server
 
 AnySim = Sim[Any, Any]
-PREFIX = "/geo/sim3"
+Found = Callable[[str], httpx.Response]
 SIM = SIMS[0]
 ADDRESSES = {
     "launcher": "/",
@@ -110,15 +112,9 @@ class Document(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[Server]:
-    with Server(SIM3_ROOT_PATH=PREFIX) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def client(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client:
-        yield client
+def found(client: httpx.Client) -> Found:
+    """What is at an address, asked for once for all tests that only look at it."""
+    return functools.cache(client.get)
 
 
 def get(client: httpx.Client, address: str, status: int = 200) -> Document:
@@ -132,8 +128,8 @@ def get(client: httpx.Client, address: str, status: int = 200) -> Document:
 
 
 @each_address
-def test_page_has_the_structure_that_people_find_their_way_by(client: httpx.Client, address: str) -> None:
-    page = Document(client.get(address).text)
+def test_page_has_the_structure_that_people_find_their_way_by(found: Found, address: str) -> None:
+    page = Document(found(address).text)
     assert page.one("html").attributes["lang"] == "en"
     assert "Sim3" in page.one("title").text
     assert page.one("main").attributes["id"] == "main"
@@ -147,17 +143,17 @@ def test_page_has_the_structure_that_people_find_their_way_by(client: httpx.Clie
 
 
 @each_address
-def test_everything_a_page_needs_is_here(client: httpx.Client, server: Server, address: str) -> None:
-    for wanted in Document(client.get(address).text).loaded():
+def test_everything_a_page_needs_is_here(found: Found, server: Server, address: str) -> None:
+    for wanted in Document(found(address).text).loaded():
         wanted = wanted.removeprefix(server.origin)  # what other sites ask for is whole
         assert wanted.startswith(PREFIX + "/")
-        answer = client.get(server.origin + wanted)
+        answer = found(server.origin + wanted)
         assert answer.status_code in (200, 307), wanted
 
 
 @each_address
-def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Server, address: str) -> None:
-    page = Document(client.get(address).text)
+def test_every_link_of_a_page_leads_somewhere(found: Found, server: Server, address: str) -> None:
+    page = Document(found(address).text)
     ids = {element.attributes.get("id") for element in page.elements}
     for link in page.links():
         if link.startswith("#"):
@@ -165,7 +161,7 @@ def test_every_link_of_a_page_leads_somewhere(client: httpx.Client, server: Serv
         elif not link.startswith("https://"):
             link = urljoin(PREFIX + address, link)
             assert link.startswith(PREFIX + "/")
-            assert client.get(server.origin + link).status_code in (200, 307), link
+            assert found(server.origin + link).status_code in (200, 307), link
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -264,13 +260,10 @@ def test_page_for_a_frame_leaves_out_what_surrounds_it(client: httpx.Client) -> 
 
 
 def test_full_server_says_so_and_offers_to_try_again() -> None:
-    with (
-        Server(SIM3_MAX_SESSIONS="1") as server,
-        httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client,
-    ):
+    with Local(max_sessions=1) as local:
         address = f"/sims/{SIM.slug}/embed"
-        assert client.get(address, follow_redirects=True).status_code == 200
-        answer = client.get(address, follow_redirects=True)
+        assert local.http.get(address, follow_redirects=True).status_code == 200
+        answer = local.http.get(address, follow_redirects=True)
         assert answer.status_code == 503
         assert str(answer.url) in Document(answer.text).links()
 

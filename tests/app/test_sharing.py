@@ -5,9 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import re
-from collections.abc import Iterator
 from html.parser import HTMLParser
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, quote, urlsplit
 
@@ -22,36 +20,12 @@ from segno import make
 from app.routes.sharing import FORM, LONGEST, linked
 from app.routes.snippets import ALLOW, snippets
 from sims import SIMS
-from tests.server import PATIENCE, Server
+from tests.app.conftest import PREFIX
+from tests.server import Server
 
-PREFIX = "/geo/sim3"
 LINK = 'https://school.example/sims/euler-angles/embed?yaw=45&only=yaw,pitch&order="zyx"'
 FILTERED = {"src", "width", "height", "name", "scrolling", "frameborder", "title", "style", "class", "id"}
 """What HTMLPurifier, which Moodle filters by, leaves of a frame; others leave more."""
-LESSON = """---
-title: Our own lesson
-summary: Turn it.
-sim: euler-angles
----
-
-## What to see
-
-Some words.
-"""
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    folder: Path = tmp_path_factory.mktemp("lessons")
-    (folder / "ours.md").write_text(LESSON)
-    with Server(SIM3_ROOT_PATH=PREFIX, SIM3_LESSON_DIR=str(folder)) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
-def client(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.url, trust_env=False, timeout=PATIENCE) as client:
-        yield client
 
 
 class Elements(HTMLParser):

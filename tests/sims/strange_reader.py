@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from os import _exit
@@ -87,3 +88,16 @@ def forges(name: str, data: bytes) -> dict[str, Any]:
         except OSError:
             continue
     return {}
+
+
+def sizes(text: str) -> Any:
+    """All the numbers of a text."""
+    found = re.findall(r"\d+", text)
+    if not found:
+        raise ValueError("There is no number in it.")
+    return {"sizes": tuple(map(int, found))}
+
+
+def forever(text: str) -> Any:
+    while True:
+        text += text

@@ -6,6 +6,7 @@ import logging
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,14 @@ from tests.server import ROOT, wait_for
 
 READER = "tests.sims.strange_reader"
 NAME = "a “strange”\nfile.bin"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _children_are_its_own() -> Iterator[None]:
+    """Those of these tests know nothing of the sims, whose readers would be loaded in the time of a file."""
+    child.stop()
+    yield
+    child.stop()
 
 
 def read(function: str, data: bytes | Path = b"secret", limits: Limits | None = None, **arguments: Any) -> child.Values:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -13,6 +12,7 @@ from sims.kit.fields import Slider
 from sims.kit.params import Params
 from sims.kit.paste import Paste
 from tests.sims.markup import bad_attributes, mistakes
+from tests.sims.strange_reader import forever, sizes
 
 
 class SizeParams(Params):
@@ -22,21 +22,8 @@ class SizeParams(Params):
     """How large"""
 
 
-def sizes(text: str) -> Any:
-    """All the numbers of a text."""
-    found = re.findall(r"\d+", text)
-    if not found:
-        raise ValueError("There is no number in it.")
-    return {"sizes": tuple(map(int, found))}
-
-
 def largest(_: SizeParams, found: Any) -> Mapping[str, Any]:
     return {"size": max(found["sizes"])}
-
-
-def forever(text: str) -> Any:
-    while True:
-        text += text
 
 
 PASTE = Paste("Own data", "Sizes", "Any <numbers>", "1, 2", sizes, largest, (".txt",))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 import inspect
+import itertools
 import re
 import socket
 from collections.abc import Callable, Iterator
@@ -21,10 +22,10 @@ import numpy as np
 import pytest
 import viser
 import websockets.asyncio.server
-from viser import _messages
+from viser import _messages, _scene_handles
 from viser._assignable_props_api import AssignablePropsBase
 from viser._gui_handles import _GuiHandleState
-from viser._scene_handles import _SceneNodeHandleState, _set_pose_vector
+from viser._scene_handles import _SceneNodeHandleState
 from viser.infra._infra import WebsockClientConnection, WebsockServer
 from websockets.exceptions import ConnectionClosedOK
 
@@ -46,6 +47,8 @@ VISER = Path(viser.__file__).parent
 PINNED = {
     "_assignable_props_api",
     "_prop_hints",
+    "_scene_api",
+    "_set_pose_vector",
     "_impl",
     "_live_connections",
     "_owner_id",
@@ -140,10 +143,27 @@ def test_messages_have_the_fields_that_we_fill(message: Any, fields: list[str]) 
 
 def test_setters_still_leave_out_small_changes() -> None:
     """The reason for `set_pose`; once this fails, viser's own setters may do."""
-    sent: list[Any] = []
-    made = partial(_messages.SetPositionMessage, "/node")
-    _set_pose_vector(np.array([0.5, 0.0, 0.0]), (0.500001, 0.0, 0.0), 3, sent.append, made)
-    assert not sent
+    source = Path(_scene_handles.__file__).read_text(encoding="utf-8")
+    assert source.count("_set_pose_vector(") == 5, "its setters call it"
+    own = (
+        "    value_cast: _PoseTupleT = cast_vector(value, length)\n    value_arr = np.asarray(value_cast)\n"
+        "    if np.allclose(value_arr, current):\n        return\n"
+        "    current[:] = value_arr\n    queue(make_message(value_cast))\n"
+    )
+    assert own in source, "what ours does too"
+
+
+def test_setters_leave_out_what_those_of_viser_do() -> None:
+    numbers = [0.0, -0.0, 1e-8, 1.1e-8, 0.5, 0.500005, 0.50001, -0.5, 3, 1e300, np.inf, -np.inf, np.nan]
+    for old, new in itertools.product(numbers, repeat=2):
+        current, sent = np.array([0.5, old, 0.0]), list[Any]()
+        with np.errstate(invalid="ignore"):
+            same = np.allclose((0.5, new, 0.0), current)
+        _scene_handles._set_pose_vector(
+            current, (0.5, new, 0.0), 3, sent.append, partial(_messages.SetPositionMessage, "/node")
+        )
+        assert [message.position for message in sent] == ([] if same else [(0.5, new, 0.0)])
+        np.testing.assert_array_equal(current, [0.5, old if same else new, 0.0])
 
 
 def test_client_and_server_speak_of_the_same_version() -> None:
