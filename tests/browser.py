@@ -14,7 +14,8 @@ import sys
 from pathlib import Path
 from typing import TypedDict
 
-NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+"""The first is Chromium without windows, which takes a fifth less of the machine."""
 
 WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 FOR_TESTS = (
@@ -89,8 +90,12 @@ def launch_options(*more: str) -> LaunchOptions:
 
 
 def ensure_browser() -> str:
-    """Find a browser, or install one: Playwright's, else Debian's package when root."""
-    attempts = ([sys.executable, "-m", "playwright", "install", "chromium"],), debian_commands("chromium")
+    """Find a browser, or install one: Playwright's, else one of Debian's packages when root."""
+    attempts = (
+        ([sys.executable, "-m", "playwright", "install", "chromium"],),
+        debian_commands("chromium-headless-shell"),
+        debian_commands("chromium"),
+    )
     for commands in attempts:
         if browser := find_browser():
             return browser

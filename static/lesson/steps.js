@@ -11,8 +11,10 @@ export class Steps {
     this.taken = false; // somebody moved the sim since the text did
     this.shown = null; // what the text moved it to
     this.mine = null; // their state
+    this.coming = false; // what the text moved it to, which it hasn't told yet
+    this.passes = false; // it comes although somebody has taken over meanwhile
     sim.on("state", (state) => this.hear(state));
-    sim.on("touched", () => (this.taken = true));
+    sim.on("touched", () => Object.assign(this, { taken: true, passes: this.coming }));
     addEventListener("scroll", () => this.look(), { passive: true });
     addEventListener("resize", () => this.look());
     document.addEventListener("click", (event) => this.press(event));
@@ -31,7 +33,11 @@ export class Steps {
 
   hear({ params, query }) {
     this.query = query;
-    if (query === this.step?.query) this.taken = false;
+    if (query === this.shown?.query) this.coming = false;
+    if (query === this.step?.query) {
+      this.taken &&= this.passes;
+      this.passes = false;
+    }
     if (this.taken) this.mine = { params, query };
     this.offer();
   }
@@ -63,6 +69,7 @@ export class Steps {
 
   go(state, seconds) {
     this.taken = false;
+    this.coming ||= state.query !== this.query;
     this.shown = state;
     this.sim.set(state, seconds);
   }

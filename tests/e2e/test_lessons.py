@@ -16,6 +16,19 @@ BACK_AND_FORTH = """async (steps) => {
         for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
     }
 }"""
+# The text has moved the sim there and back, and somebody takes over before the sim tells of either.
+OVERTAKEN = """async ([here, there]) => {
+    const main = document.querySelector("script[src$='/main.js']").src;
+    const { Steps } = await import(main.replace("main.js", "steps.js"));
+    const takers = {};
+    const steps = new Steps({ on: (type, taker) => (takers[type] = taker), set() {} },
+        [{ id: here, query: "here" }, { id: there, query: "there" }]);
+    Object.assign(steps, { at: 0, query: "here" });
+    steps.go(steps.steps[1]);
+    steps.go(steps.steps[0]);
+    takers.touched();
+    return ["there", "here", "mine", "here"].map((query) => (takers.state({ params: {}, query }), steps.taken));
+}"""
 # From now on `passes()` does at once what a page waits for.
 NOTED = """() => {
     const [wait, stop, noted] = [setTimeout, clearTimeout, new Map()];
@@ -94,6 +107,11 @@ def test_the_step_that_is_read_moves_the_sim_until_somebody_takes_over(reader: L
     mine.click()
     state(reader, pitch=89, yaw=1, roll=0)
     expect(show).to_be_visible()
+
+
+def test_what_the_text_did_before_somebody_took_over_is_not_taken_for_theirs(reader: Learner) -> None:
+    taken = reader.page.evaluate(OVERTAKEN, ["the-last-degree", "the-other-end"])
+    assert taken == [True, True, True, False], "until they are back at the step by themselves"
 
 
 def test_a_number_in_the_text_is_moved_and_typed(reader: Learner) -> None:
