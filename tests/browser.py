@@ -19,8 +19,6 @@ NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chro
 
 WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 FOR_TESTS = (
-    # as schools have it set, frames of other sites have no cookies and no storage
-    "--test-third-party-cookie-phaseout",
     # where WebGL is drawn in software, the page around it is put together in less time so, and half of a frame's pixels
     # are there for smooth edges alone
     "--disable-gpu-compositing",

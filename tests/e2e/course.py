@@ -8,7 +8,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import TracebackType
 from typing import Any, Self
 
-from tests.e2e.learner import Learner
+from tests.e2e.learner import COURSE, Learner
 from tests.frames import Message
 
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8">
@@ -58,7 +58,7 @@ class CourseSite:
 
     @property
     def url(self) -> str:
-        return f"http://localhost:{self._server.server_port}/"
+        return f"http://{COURSE}:{self._server.server_port}/"
 
     def show(self, learner: Learner, path: str, attributes: str = "", *, before: str = "", after: str = "") -> None:
         """Open the course page with a sim of the learner's server in its frame, amid some more of the page."""

@@ -42,6 +42,8 @@ PATIENCE = 60.0
 OPTIONS = ("view", "controls", "theme", "only")
 PAINTED, UNPAINTED = "//127.0.0.1:", "//localhost:"
 """By the second name `tests.prompt` gives nobody viser's client."""
+COURSE = "course.localhost"
+"""Another site on this machine, whose pages have sims in frames."""
 THUMB = 16.0
 """Pixels that a slider's thumb takes of its track."""
 # What viser's client makes the browser say: at each start, at each drag in the scene, and, without a GPU, where there
@@ -71,7 +73,7 @@ class Witness:
     """What must not happen on any page of a browser: errors, warnings, requests to other hosts."""
 
     def __init__(self, context: BrowserContext) -> None:
-        self.hosts = {"127.0.0.1", "localhost"}
+        self.hosts = {"127.0.0.1", "localhost", COURSE}
         self.begin()
         context.on("console", self._said)
         context.on("weberror", lambda error: self._failed(f"{error.error}"))
