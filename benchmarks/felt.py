@@ -127,7 +127,7 @@ def measure(count: int) -> dict[str, dict[str, float]]:
     """For each sim and way of moving something, what it took."""
     found: dict[str, dict[str, float]] = {}
     with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(**launch_options())
+        browser = playwright.chromium.launch(**launch_options(windows=True))
         for sim in SIMS:
             address = f"http://127.0.0.1:{sim3.port}/sims/{sim.slug}/embed"
             ways = ["key"]

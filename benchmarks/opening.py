@@ -38,7 +38,7 @@ def measure(repeats: int, warm_up: int) -> dict[str, dict[str, list[float]]]:
     """Seconds until `live` and `still`, for each way, turn by turn; the first `warm_up` don't count."""
     found: dict[str, dict[str, list[float]]] = {}
     with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(**launch_options())
+        browser = playwright.chromium.launch(**launch_options(windows=True))
         addresses = {
             sim3.way: f"http://127.0.0.1:{sim3.port}/sims/{SLUG}/embed",
             plain.way: f"http://127.0.0.1:{plain.port}/",

@@ -89,7 +89,7 @@ def dragging(less: bool) -> Iterator[str]:
 def first_load(slug: str, *, packed: bool) -> tuple[int, int]:
     """Bytes that came, and in how many files, until a sim is live in a browser that has never been there."""
     with Sim3() as server, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(**launch_options())
+        browser = playwright.chromium.launch(**launch_options(windows=True))
         try:
             return _loaded(browser, f"http://127.0.0.1:{server.port}/sims/{slug}/embed", packed)
         finally:

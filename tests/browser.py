@@ -66,20 +66,24 @@ class BrowserMissing(RuntimeError):
 
 
 @functools.cache
-def find_browser() -> str | None:
-    """Path of the browser's executable: `SIM3_BROWSER`, one on PATH, or Playwright's own."""
+def find_browser(*, windows: bool = False) -> str | None:
+    """Path of the executable: `SIM3_BROWSER`, one on PATH (rather with windows, or without), or Playwright's own."""
     if named := os.environ.get("SIM3_BROWSER"):
         found = shutil.which(named)
         if found is None or not _starts(found):
             raise BrowserMissing(f"SIM3_BROWSER is {named!r}, which is no program that starts")
         return found
-    installed = (path for name in NAMES if (path := shutil.which(name)) and _starts(path))
+    names = (*NAMES[1:], NAMES[0]) if windows else NAMES
+    installed = (path for name in names if (path := shutil.which(name)) and _starts(path))
     return next(installed, None) or _playwrights_own()
 
 
-def launch_options(*more: str) -> LaunchOptions:
-    """How to launch the browser: also as root, without a GPU, and without traffic of its own."""
-    browser = find_browser()
+def launch_options(*more: str, windows: bool = False) -> LaunchOptions:
+    """How to launch the browser: also as root, without a GPU, and without traffic of its own.
+
+    What a frame takes is measured in one that has `windows` where it is installed: without them, frames go nowhere.
+    """
+    browser = find_browser(windows=windows)
     if browser is None:
         raise BrowserMissing(WHAT_TO_DO)
     # Chromium's sandbox refuses to run as root.
