@@ -34,10 +34,8 @@ export class Steps {
   hear({ params, query }) {
     this.query = query;
     if (query === this.shown?.query) this.coming = false;
-    if (query === this.step?.query) {
-      this.taken &&= this.passes;
-      this.passes = false;
-    }
+    if (query === this.step?.query) this.taken &&= this.passes;
+    else if (!this.coming) this.passes = false;
     if (this.taken) this.mine = { params, query };
     this.offer();
   }
