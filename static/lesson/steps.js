@@ -12,9 +12,9 @@ export class Steps {
     this.shown = null; // what the text moved it to
     this.mine = null; // their state
     this.coming = false; // what the text moved it to, which it hasn't told yet
-    this.passes = false; // it comes although somebody has taken over meanwhile
+    this.passes = false; // what somebody moved it to hasn't been told yet: until then it tells of what the text did
     sim.on("state", (state) => this.hear(state));
-    sim.on("touched", () => Object.assign(this, { taken: true, passes: this.coming }));
+    sim.on("touched", () => Object.assign(this, { taken: true, passes: true }));
     addEventListener("scroll", () => this.look(), { passive: true });
     addEventListener("resize", () => this.look());
     document.addEventListener("click", (event) => this.press(event));
@@ -55,7 +55,7 @@ export class Steps {
     if (k === this.at) return;
     this.at = k;
     for (const [i, { node }] of this.steps.entries()) node.classList.toggle("current", i === k);
-    if (this.query === this.step.query && !this.moving) this.taken = false;
+    if (this.query === this.step.query && !this.moving) this.taken &&= this.passes;
     else if (!this.taken) this.go(this.step, GLIDE);
     this.offer();
   }
