@@ -24,6 +24,8 @@ FOR_TESTS = (
     "--disable-gpu-compositing",
     "--webgl-antialiasing-mode=none",
 )
+COARSE = 0.5
+"""Scale of a page for tests that look at no pixel: a quarter of them, which take most of the time without a GPU."""
 QUIET = (
     "--disable-background-networking",
     "--disable-component-update",

@@ -1,6 +1,6 @@
 """The child in which strangers' files are read: a program of its own, that `child` starts and speaks with.
 
-It loads no more than what it is to read with needs: this file is run by its path, so that `sims` isn't imported for it.
+This file is run by its path: it imports nothing of ours before the module that it is to read with, and what that needs.
 The pipe carries, both ways, the length of a head, the head as JSON, and bytes behind it.
 """
 

@@ -25,6 +25,7 @@ from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
 from tests.app.conftest import PREFIX, Local
 from tests.axe import COLOURS, findings
+from tests.browser import COARSE
 from tests.server import Server
 
 AnySim = Sim[Any, Any]
@@ -288,7 +289,7 @@ def used_page(browser: Browser) -> Iterator[Page]:
 @contextmanager
 def new_page(browser: Browser) -> Iterator[Page]:
     context = browser.new_context(
-        reduced_motion="reduce", device_scale_factor=0.5, permissions=["clipboard-read", "clipboard-write"]
+        reduced_motion="reduce", device_scale_factor=COARSE, permissions=["clipboard-read", "clipboard-write"]
     )
     page = context.new_page()
     page.route("**/embed*", stand_in)

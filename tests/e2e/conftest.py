@@ -9,14 +9,13 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, ViewportSize
 
+from tests.browser import COARSE
 from tests.e2e.learner import Learner, Witness
 from tests.server import Server
 
 DESK = ViewportSize(width=880, height=600)
 EYES = {"color_scheme": "light", "reduced_motion": "no-preference"}
 """What a page can be told anew at any time."""
-COARSE = {"device_scale_factor": 0.5}
-"""A quarter of the pixels: without a GPU they take most of the time, and where things are stays the same."""
 
 
 # As schools have it set, frames of other sites have no storage. Chromium without windows knows no such setting.
@@ -49,7 +48,7 @@ class Seats:
         self._free: dict[str, list[Learner]] = {}
 
     def new(self, size: ViewportSize, options: dict[str, Any]) -> Learner:
-        context = self._browser.new_context(**{"viewport": size, **EYES, **COARSE, **options})
+        context = self._browser.new_context(**{"viewport": size, **EYES, "device_scale_factor": COARSE, **options})
         context.add_init_script(NO_STORAGE)
         return Learner(context.new_page(), Witness(context), self._server.url)
 
