@@ -1,8 +1,8 @@
 // A sim that was taken home: plays back what was recorded, without a server.
 import { unpacked } from "./film.js";
 import { column, Query, sim } from "../viewer/page.js";
-import { View } from "../viewer/view.js";
-import { describeScene, drawnVersion, lookFrom, prepare, show, start } from "../viewer/viser_dom.js";
+import { describeScene, View } from "../viewer/view.js";
+import { drawnVersion, lookFrom, prepare, show, start } from "../viewer/viser_dom.js";
 
 const LOOKING = 30; // milliseconds between two looks at whether the scene is there
 const EACH = 100; // milliseconds of a frame that plays

@@ -223,3 +223,17 @@ export class View {
 function read(text) {
   return text?.replaceAll("−", "-").split(",").map(Number) ?? null;
 }
+
+// The scene can have the focus; people who don't see it hear what is there.
+export function describeScene(words) {
+  const canvas = sceneCanvas();
+  if (!canvas) return;
+  for (const old of scene.querySelectorAll("canvas[role]")) {
+    if (old === canvas) continue;
+    for (const name of ["role", "aria-label", "tabindex"]) old.removeAttribute(name);
+  }
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "application");
+  canvas.setAttribute("aria-roledescription", "3D scene");
+  canvas.setAttribute("aria-label", words);
+}

@@ -4,6 +4,7 @@ import { Query, scene, sim } from "./page.js";
 
 const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
+const MAP = "data:image/jpeg"; // how its address begins
 const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
 const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
 const COARSER = 0.75; // of the resolution, where a machine needs more than SLOW milliseconds for half of its frames
@@ -40,6 +41,7 @@ export function prepare(view, looked, blind) {
   // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
   document.hasFocus = () => document.visibilityState === "visible" && !sim.resting;
   noticeBlindness(blind);
+  leaveMap();
   keepKeys();
   freeFingers();
   adopt(looked);
@@ -73,6 +75,14 @@ function noticeBlindness(blind) {
     if (kind === "webgl2" && !context) blind();
     return context;
   };
+}
+
+// The photograph that viser lights scenes by, where a server sends none, lies in its client. It would be made ready
+// before the server has said that no scene here is lit by it, which takes a tenth of an opening without a GPU.
+function leaveMap() {
+  const ask = window.fetch;
+  window.fetch = (what, ...options) =>
+    (what.url ?? `${what}`).startsWith(MAP) ? new Promise(() => {}) : ask(what, ...options);
 }
 
 // viser's client turns the view by keys wherever the focus is; here only while the scene has it.
@@ -232,18 +242,4 @@ function avoidModuleWorkers() {
 // while; to look for it among them by its size would lay the page out at each key and each state.
 export function sceneCanvas() {
   return viewer?.canvas ?? null;
-}
-
-// The scene can have the focus; people who don't see it hear what is there.
-export function describeScene(words) {
-  const canvas = sceneCanvas();
-  if (!canvas) return;
-  for (const old of scene.querySelectorAll("canvas[role]")) {
-    if (old === canvas) continue;
-    for (const name of ["role", "aria-label", "tabindex"]) old.removeAttribute(name);
-  }
-  canvas.tabIndex = 0;
-  canvas.setAttribute("role", "application");
-  canvas.setAttribute("aria-roledescription", "3D scene");
-  canvas.setAttribute("aria-label", words);
 }

@@ -1,6 +1,6 @@
 // The page's words: what is spoken of a change, and notices for a moment.
 import { element, sim } from "./page.js";
-import { describeScene } from "./viser_dom.js";
+import { describeScene } from "./view.js";
 
 const REST = 700; // milliseconds without a change before it is spoken
 const SEEN = 6000;

@@ -6,7 +6,6 @@ import json
 import random
 import socket
 import threading
-import time
 from collections import Counter, deque
 from collections.abc import Iterator
 from contextlib import suppress
@@ -21,8 +20,8 @@ from sims.kit.viser_internals import PROTOCOL
 from tests.app.page import Page
 from tests.server import Server, camera_message
 
-SECONDS = 12.0
-VISITS = 1500
+VISITS = 400
+ANSWERS = 20
 ROOMS = 24
 GROWTH = 40.0
 """Megabytes that the server may have grown by, after a first round."""
@@ -255,8 +254,8 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         seen: Counter[bytes] = Counter()
         staying: deque[socket.socket] = deque()
         neighbour.start()
-        begin, warm, visits = time.monotonic(), 0.0, 0
-        while visits < VISITS and time.monotonic() - begin < SECONDS:
+        warm, visits = 0.0, 0
+        while neighbour.is_alive() and (visits < VISITS or neighbour.answered < ANSWERS):
             for connection, status in pay(server, strangers.visit(visits)):
                 seen[status] += 1
                 staying.append(connection)
@@ -272,11 +271,9 @@ def test_a_neighbour_drags_on_whatever_strangers_send() -> None:
         assert not neighbour.is_alive()
         if neighbour.failure is not None:
             raise neighbour.failure
-        assert visits > 300
         assert seen[b"101"] > visits
         assert seen[b"403"] + seen[b"400"] > 0, "handshakes that are refused"
         assert not seen[b"500"]
-        assert neighbour.answered > 20
         assert server.memory() - warm < GROWTH
         for sim in LIGHT:
             Page(server.url, slug=sim.slug).close()

@@ -63,6 +63,11 @@ def test_what_the_dark_theme_changes_in_labels_is_there(words: str) -> None:
     assert words in DOM
 
 
+def test_the_one_photograph_in_the_client_is_the_map_that_is_left() -> None:
+    assert files()["client.js"].decode("utf-8").count("data:image/jpeg") == 1
+    assert 'MAP = "data:image/jpeg"' in DOM
+
+
 @pytest.mark.parametrize("name", [*NAMES, "Viser", "hasFocus"])
 def test_what_the_companion_knows_of_the_client_is_there(name: str) -> None:
     assert name in DOM + STYLES
