@@ -3,6 +3,9 @@
 Each input is timed from its own event: until a number beside the scene has changed, and until a scene that was drawn
 after it is on the screen (two animation frames later). Beside them stand what the page's main thread does for one
 input, and how often it lays the page out; and the same sim's sliders as viser alone has them.
+
+The browser is left to find out by itself whether there is a GPU, as a learner's is: without one the processor draws the
+scene and puts the page together.
 """
 
 from __future__ import annotations

@@ -17,12 +17,13 @@ from typing import TypedDict
 NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """The first is Chromium without windows, which takes a fifth less of the machine."""
 
-WEBGL_WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+WEBGL_WITHOUT_GPU = ("--enable-unsafe-swiftshader",)
 FOR_TESTS = (
-    # where WebGL is drawn in software, the page around it is put together in less time so, and half of a frame's pixels
-    # are there for smooth edges alone
+    # the same pixels on every machine, whatever GPU it has; and where WebGL is drawn in software, the page around it is
+    # put together in less time so
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
     "--disable-gpu-compositing",
-    "--webgl-antialiasing-mode=none",
 )
 COARSE = 0.5
 """Scale of a page for tests that look at no pixel: a quarter of them, which take most of the time without a GPU."""

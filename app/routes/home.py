@@ -37,7 +37,7 @@ FRAMES = 72
 HEAVY = "This sim works too long for a sweep: its state can be taken home."
 OURS = ("sweep", "from", "to", "frames")
 SHEETS = ("tokens.css", "readouts.css", "viewer.css", "viser.css", "home.css")
-SCRIPTS = {"viewer": ("page.js", "view.js", "viser_dom.js"), "home": ("film.js",)}
+SCRIPTS = {"viewer": ("frames.js", "page.js", "view.js", "viser_dom.js"), "home": ("film.js",)}
 """What static/home/main.js imports, with what that imports."""
 router = APIRouter(include_in_schema=False)
 

@@ -1,16 +1,11 @@
-// All that knows viser's client from inside: what it is told where it looks for it, and what it lets pages see. Tests
-// compare what stands here with the client of the installed version.
+// All that knows viser's client from inside, with frames.js: what it is told where it looks for it, and what it lets pages
+// see. Tests compare what stands here with the client of the installed version.
+import { drawLess, noticeRenderer, wholeResolution, withoutGPU } from "./frames.js";
 import { Query, scene, sim } from "./page.js";
 
 const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
 const MAP = "data:image/jpeg"; // how its address begins
-const SETTLED = 300; // milliseconds after a change when the scene is drawn once more, for what came late
-const LOADING = 1500; // milliseconds for which a new scene is drawn as viser does it: textures and letters still come
-const COARSER = 0.75; // of the resolution, where a machine needs more than SLOW milliseconds for half of its frames
-const SLOW = 40;
-const QUICK = 20; // milliseconds with which it gets the whole one back; a coarser frame has half the pixels
-const SAMPLES = 8; // changes between two such decisions
 let viewer = null; // viser's own state, once it is there
 let eye = null; // what viser's camera last said of itself
 let untold = null; // the same where the server wasn't told of it
@@ -40,7 +35,7 @@ export function prepare(view, looked, blind) {
   history.replaceState = (data, title, url) => title === "Viser" || replace(data, title, url);
   // viser asks the document for focus before it reconnects; a frame that nobody clicked yet must reconnect too.
   document.hasFocus = () => document.visibilityState === "visible" && !sim.resting;
-  noticeBlindness(blind);
+  noticeWebGL(blind);
   leaveMap();
   keepKeys();
   freeFingers();
@@ -66,13 +61,16 @@ export function show(messages) {
   viewer.requestRender();
 }
 
-// Whether there is WebGL is seen when viser asks for it: to ask beforehand takes up to 0.4 s without a GPU.
-function noticeBlindness(blind) {
+// Whether there is WebGL is seen when viser asks for it: to ask beforehand takes up to 0.4 s without a GPU. It asks first
+// on a canvas of no use, which says what will draw.
+function noticeWebGL(blind) {
   const { prototype } = HTMLCanvasElement;
   const ask = prototype.getContext;
-  prototype.getContext = function (kind, ...options) {
-    const context = ask.call(this, kind, ...options);
-    if (kind === "webgl2" && !context) blind();
+  prototype.getContext = function (kind, options) {
+    const context = ask.call(this, kind, withoutGPU() ? { ...options, antialias: false } : options);
+    if (kind !== "webgl2") return context;
+    if (context) noticeRenderer(context);
+    else blind();
     return context;
   };
 }
@@ -106,63 +104,10 @@ function adopt(looked) {
     get: () => viewer,
     set: (mutable) => {
       viewer = mutable;
-      drawLess(mutable, sharpness(mutable));
+      drawLess(mutable);
       watchCamera(mutable, looked);
     },
   });
-}
-
-// viser draws for a quarter of a second after each change, which takes most of a machine without a GPU. One frame shows a
-// change (React asks for another by itself where it has something to add), and one more, when nothing has changed for a
-// while, what comes late.
-function drawLess(mutable, drawn) {
-  const whole = mutable.requestRender;
-  let late = 0;
-  const frame = () => {
-    const { internal, invalidate } = mutable.scene.__r3f.root.getState();
-    if (!internal.frames) invalidate(); // one that is still to be drawn shows this change too
-  };
-  const draw = () => {
-    if (!sim.liveAt || performance.now() < sim.liveAt + LOADING) {
-      whole();
-      return;
-    }
-    // viser takes what came while it draws, and React adds most of it after that frame: each change would be drawn twice,
-    // first without what it is about. Taken now, all of it is in the next frame.
-    mutable.drainMessageQueue?.();
-    frame();
-    requestAnimationFrame((first) => requestAnimationFrame((second) => drawn(second - first)));
-    clearTimeout(late);
-    late = setTimeout(frame, SETTLED);
-  };
-  Object.defineProperty(mutable, "requestRender", { configurable: true, get: () => draw, set: () => {} });
-}
-
-// Pixels of the screen for one of the page: fewer where the page is zoomed out, and never more than viser's client takes.
-function wholeResolution() {
-  return Math.min(devicePixelRatio, 2);
-}
-
-// viser's client lowers its resolution when few frames come, as they do here whenever little changes; and each change of
-// it holds up a frame. It keeps one instead, coarser only where two frames that follow each other take long. What comes
-// back is told how long they took. The resolution follows a page that is zoomed.
-function sharpness(mutable) {
-  const root = mutable.scene.__r3f.root;
-  let share = 1;
-  let times = [];
-  const keep = ({ viewport, setDpr }) => {
-    const wanted = share * wholeResolution();
-    if (viewport.dpr !== wanted) setDpr(wanted);
-  };
-  root.subscribe(keep);
-  return (took) => {
-    times.push(took);
-    if (times.length < SAMPLES) return;
-    const middle = times.sort((a, b) => a - b)[SAMPLES / 2];
-    times = [];
-    share = middle > SLOW ? COARSER : middle < QUICK ? 1 : share;
-    keep(root.getState());
-  };
 }
 
 // From where the scene is looked at: the viewpoint x, y, z, and the place that it looks at.

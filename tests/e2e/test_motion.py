@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
@@ -64,11 +65,11 @@ def test_an_animation_steps_under_reduced_motion(classroom: Classroom) -> None:
     assert set(progress(learner, since)) == {0, 1, 2, 3}
 
 
-RESOLUTIONS = """(times) => {
+RESOLUTIONS = """async (times) => {
     const root = { viewport: { dpr: 1 }, size: [] };
     root.setDpr = (dpr) => { root.viewport = { dpr }; };
     const store = { getState: () => ({ ...root, internal: { frames: 0 }, invalidate() {} }), subscribe(heard) { store.heard = heard; } };
-    window.__viserMutable = { scene: { __r3f: { root: store } } };
+    window.__viserMutable = { scene: { __r3f: { root: store } }, nodePoseData: {} };
     sim3.liveAt = 1 - 2000;
     const ask = window.requestAnimationFrame;
     const found = times.map((took) => {
@@ -80,10 +81,29 @@ RESOLUTIONS = """(times) => {
     window.requestAnimationFrame = ask;
     root.setDpr(2); // as when the page is laid out anew
     store.heard(root);
-    return [...found, root.viewport.dpr / devicePixelRatio];
+    found.push(root.viewport.dpr / devicePixelRatio);
+    const rests = new Promise((resolve) => { root.setDpr = (dpr) => resolve(dpr / devicePixelRatio); });
+    return [...found, await rests];
+}"""
+WIDTHS = """() => {
+    const canvas = document.querySelector("canvas[role]");
+    const share = () => canvas.width / Math.floor(canvas.clientWidth * devicePixelRatio);
+    window.widths = [share()];
+    new MutationObserver(() => widths.push(share())).observe(canvas, { attributeFilter: ["width"] });
 }"""
 
 
-def test_the_scene_is_coarser_only_where_its_frames_take_long(classroom: Classroom) -> None:
+def test_a_moving_scene_is_coarser_only_where_its_frames_take_long_and_none_at_rest(classroom: Classroom) -> None:
     learner = classroom.open_column("quaternion/embed")
-    assert learner.frame.evaluate(RESOLUTIONS, [17, 50, 30, 17, 30, 90]) == [1, 0.75, 0.75, 1, 1, 0.75, 0.75]
+    assert learner.frame.evaluate(RESOLUTIONS, [17, 50, 30, 17, 30, 90]) == [1, 0.75, 0.75, 1, 1, 0.75, 0.75, 1]
+
+
+def test_without_a_gpu_the_edges_of_a_scene_become_smooth_at_rest(classroom: Classroom) -> None:
+    learner = classroom.open("quaternion/embed")
+    learner.frame.wait_for_function(
+        "document.querySelector('canvas[role]').width > 1.4 * innerWidth * devicePixelRatio / 2"
+    )
+    learner.frame.evaluate(WIDTHS)
+    learner.press_keys("angle", "ArrowRight")
+    learner.frame.wait_for_function("widths.length === 3")
+    assert learner.frame.evaluate("widths") == pytest.approx([1.5, 1, 1.5], abs=0.01)

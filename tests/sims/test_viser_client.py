@@ -47,7 +47,7 @@ def test_loader_sets_up_what_the_code_expects_and_then_loads_it() -> None:
     assert loader.endswith("})();")
 
 
-DOM = (ROOT / "static" / "viewer" / "viser_dom.js").read_text()
+DOM = "".join((ROOT / "static" / "viewer" / name).read_text() for name in ("viser_dom.js", "frames.js"))
 STYLES = (ROOT / "static" / "viser.css").read_text()
 NAMES = sorted(
     {*re.findall(r"mantine-([A-Z]\w+)-\w+", DOM + STYLES), *re.findall(r"data-dock-\w+", DOM + STYLES)}
