@@ -25,8 +25,8 @@ FOR_TESTS = (
     "--use-angle=swiftshader",
     "--disable-gpu-compositing",
 )
-COARSE = 0.5
-"""Scale of a page for tests that look at no pixel: a quarter of them, which take most of the time without a GPU."""
+COARSE = 0.35
+"""Scale of a page for tests that look at no pixel: an eighth of them, which take most of the time without a GPU."""
 QUIET = (
     "--disable-background-networking",
     "--disable-component-update",

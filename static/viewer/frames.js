@@ -47,7 +47,7 @@ export function drawLess(mutable) {
   const draw = () => {
     const loading = !sim.liveAt || performance.now() < sim.liveAt + LOADING;
     clearTimeout(late);
-    late = setTimeout(rest, loading ? LOADING : SETTLED);
+    late = setTimeout(rest, sim.liveAt ? SETTLED : LOADING);
     sharpness.moving(true);
     if (loading) {
       whole();

@@ -100,10 +100,9 @@ def test_a_moving_scene_is_coarser_only_where_its_frames_take_long_and_none_at_r
 
 def test_without_a_gpu_the_edges_of_a_scene_become_smooth_at_rest(classroom: Classroom) -> None:
     learner = classroom.open("quaternion/embed")
-    learner.frame.wait_for_function(
-        "document.querySelector('canvas[role]').width > 1.4 * innerWidth * devicePixelRatio / 2"
-    )
     learner.frame.evaluate(WIDTHS)
+    learner.frame.wait_for_function("widths.at(-1) > 1.4")
+    learner.frame.evaluate("widths.splice(0, widths.length - 1)")
     learner.press_keys("angle", "ArrowRight")
     learner.frame.wait_for_function("widths.length === 3")
     assert learner.frame.evaluate("widths") == pytest.approx([1.5, 1, 1.5], abs=0.01)
