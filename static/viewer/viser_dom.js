@@ -66,9 +66,9 @@ export function show(messages) {
 function noticeWebGL(blind) {
   const { prototype } = HTMLCanvasElement;
   const ask = prototype.getContext;
-  prototype.getContext = function (kind, options) {
-    const context = ask.call(this, kind, withoutGPU() ? { ...options, antialias: false } : options);
-    if (kind !== "webgl2") return context;
+  prototype.getContext = function (kind, ...options) {
+    if (kind !== "webgl2") return ask.call(this, kind, ...options);
+    const context = ask.call(this, kind, { ...options[0], ...(withoutGPU() ? { antialias: false } : {}) });
     if (context) noticeRenderer(context);
     else blind();
     return context;

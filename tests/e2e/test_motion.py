@@ -85,6 +85,7 @@ RESOLUTIONS = """async (times) => {
     const rests = new Promise((resolve) => { root.setDpr = (dpr) => resolve(dpr / devicePixelRatio); });
     return [...found, await rests];
 }"""
+SMOOTH = "document.querySelector('canvas[role]').getContext('webgl2').getContextAttributes().antialias"
 WIDTHS = """() => {
     const canvas = document.querySelector("canvas[role]");
     const share = () => canvas.width / Math.floor(canvas.clientWidth * devicePixelRatio);
@@ -100,6 +101,7 @@ def test_a_moving_scene_is_coarser_only_where_its_frames_take_long_and_none_at_r
 
 def test_without_a_gpu_the_edges_of_a_scene_become_smooth_at_rest(classroom: Classroom) -> None:
     learner = classroom.open("quaternion/embed")
+    assert learner.frame.evaluate(SMOOTH) is False, "no time is spent on them while it moves"
     learner.frame.evaluate(WIDTHS)
     learner.frame.wait_for_function("widths.at(-1) > 1.4")
     learner.frame.evaluate("widths.splice(0, widths.length - 1)")
