@@ -35,11 +35,13 @@ export class Trouble {
     for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, wake, { signal: on.signal, capture: true });
   }
 
-  // The browser draws no 3D; the rest works.
+  // The browser draws no 3D, or no more; the rest works.
   blind() {
     const box = element("section", { class: "s3-trouble s3-blind", role: "alert" }, scene);
-    element("h2", {}, box).textContent = "This browser can’t draw 3D";
-    element("p", {}, box).textContent = "WebGL 2 is off, or the machine has none. Numbers, pictures and controls work.";
+    element("h2", {}, box).textContent = sim.live ? "The browser took the scene away" : "This browser can’t draw 3D";
+    element("p", {}, box).textContent = (sim.live
+      ? "It does so where many are open at once. Reload the page to have it back, in the same state."
+      : "WebGL 2 is off, or the machine has none.") + " Numbers, pictures and controls work.";
     offer(box);
   }
 

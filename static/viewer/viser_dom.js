@@ -1,11 +1,12 @@
 // All that knows viser's client from inside, with frames.js: what it is told where it looks for it, and what it lets pages
 // see. Tests compare what stands here with the client of the installed version.
-import { drawLess, noticeRenderer, wholeResolution, withoutGPU } from "./frames.js";
+import { drawLess, noticeRenderer, tameHeartbeat, wholeResolution, withoutGPU } from "./frames.js";
 import { Query, scene, sim } from "./page.js";
 
 const LABEL_INK = "vec4(0.0, 0.0, 0.0, a)";
 const LABEL_PLATE = "vec4(1.0, 1.0, 1.0, 0.85 * vAlpha)";
 const MAP = "data:image/jpeg"; // how its address begins
+const TAKEN = 3000; // milliseconds in which a scene that was taken away may come back
 let viewer = null; // viser's own state, once it is there
 let eye = null; // what viser's camera last said of itself
 let untold = null; // the same where the server wasn't told of it
@@ -14,7 +15,7 @@ let send = null; // tells the server something, as viser's client does
 // viser reads from the address which websocket is this page's, whether the theme is dark, and from where to look. The
 // address itself holds the state from the first moment on, so viser is given another query where it reads it.
 // `looked` hears of each view from which the scene is seen, and says whether the server needn't; `blind` hears that the
-// browser draws no 3D.
+// browser draws no 3D, or no more.
 export function prepare(view, looked, blind) {
   const search = new Query({
     websocket: `${sim.socket}?viewer=${sim.viewer}`,
@@ -37,6 +38,7 @@ export function prepare(view, looked, blind) {
   document.hasFocus = () => document.visibilityState === "visible" && !sim.resting;
   noticeWebGL(blind);
   leaveMap();
+  tameHeartbeat();
   keepKeys();
   freeFingers();
   adopt(looked);
@@ -73,6 +75,9 @@ function noticeWebGL(blind) {
     else blind();
     return context;
   };
+  // A machine that slept can give back what draws, but empty: viser's client then misses half of the scene.
+  scene.addEventListener("webglcontextrestored", () => location.reload(), true);
+  scene.addEventListener("webglcontextlost", ({ target }) => setTimeout(() => target.isConnected && blind(), TAKEN), true);
 }
 
 // The photograph that viser lights scenes by, where a server sends none, lies in its client. It would be made ready
