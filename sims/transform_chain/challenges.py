@@ -41,7 +41,8 @@ def _two_orders(
 
 def _only_an_axis(before: ChainParams, p: ChainParams, k: int) -> bool:
     """Whether the two turned about one axis before, and nothing but an axis has changed."""
-    return before.axes[k] == before.axes[k + 1] and before == p.model_copy(update={"axes": before.axes})
+    alone = before == p.model_copy(update={"axes": before.axes})  # so it had as many joints
+    return alone and before.axes[k] == before.axes[k + 1]
 
 
 def _singular(p: ChainParams, s: ChainSolution) -> Progress:

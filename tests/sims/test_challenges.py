@@ -85,6 +85,14 @@ def test_a_path_is_not_its_end_alone(sim: AnySim, challenge: AnyChallenge) -> No
         assert not challenge.progress(*solved(sim, sim.params().changed(challenge.solves))).solved
 
 
+def test_a_path_may_come_from_an_arm_of_fewer_joints() -> None:
+    sim, path = next(case for case in CASES if case[1].id == "two-orders")
+    arm = {"axes": "zzy", "lengths": (1, 0, 0), "swap": 2}
+    fewer = {"axes": "zy", "lengths": (0, 1), "angles": (30, 40)}
+    before, after = (solved(sim, sim.params().changed(each)) for each in (fewer, arm))
+    assert not path.progress(*after, before).solved
+
+
 @each_challenge
 def test_nobody_has_solved_it_at_the_start(sim: AnySim, challenge: AnyChallenge) -> None:
     assert not challenge.progress(*solved(sim, opening(sim))).solved
