@@ -51,6 +51,16 @@ def rigs() -> Iterator[dict[str, Rig]]:
         assert not rig.problems()
 
 
+SOLUTIONS: dict[tuple[str, str], Any] = {}
+
+
+def solved(sim: AnySim, name: str, params: Params) -> Any:
+    """The solution of the state of that name, which is found once for all tests of a process."""
+    if (sim.slug, name) not in SOLUTIONS:
+        SOLUTIONS[sim.slug, name] = sim.solve(params)
+    return SOLUTIONS[sim.slug, name]
+
+
 def parse(sim: AnySim, query: str) -> Params:
     params: Params = sim.params.from_query(parse_qsl(query, keep_blank_values=True))
     return params
@@ -124,7 +134,7 @@ def test_slug_finds_the_sim(sim: AnySim) -> None:
 
 @each_state
 def test_solution_is_finite_json_with_the_fields_of_the_contract(sim: AnySim, name: str, params: Params) -> None:
-    solution = jsonable(sim.solve(params))
+    solution = jsonable(solved(sim, name, params))
     assert set(contract_of(sim).solution.split()) <= set(solution)
     text = json.dumps(solution, allow_nan=False)
     assert "-0.0," not in text, "a negative zero goes out"
@@ -132,13 +142,12 @@ def test_solution_is_finite_json_with_the_fields_of_the_contract(sim: AnySim, na
 
 @each_state
 def test_solving_is_a_function_of_the_parameters(sim: AnySim, name: str, params: Params) -> None:
-    again = params.model_copy()
-    assert jsonable(sim.solve(params)) == jsonable(sim.solve(again))
+    assert jsonable(sim.solve(params.model_copy())) == jsonable(solved(sim, name, params))
 
 
 @each_state
 def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params: Params) -> None:
-    html = readout.render(sim.readouts(params, sim.solve(params)))
+    html = readout.render(sim.readouts(params, solved(sim, name, params)))
     assert not bad_numbers(words(without_code(html)))
     assert not bad_attributes(html)
     assert not mistakes(html)
@@ -146,7 +155,7 @@ def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params:
 
 @each_state
 def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> None:
-    solution = sim.solve(params)
+    solution = solved(sim, name, params)
     shown = sim.panes(params, solution) if sim.panes else ()
     assert len({p.name for p in shown}) == len(shown)
     html = "".join(pane.content(p) for p in shown)
@@ -159,7 +168,7 @@ def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> Non
 
 @each_state
 def test_a_sentence_describes_the_state(sim: AnySim, name: str, params: Params) -> None:
-    sentence = sim.describe(params, sim.solve(params))
+    sentence = sim.describe(params, solved(sim, name, params))
     assert sentence.endswith(".")
     assert sentence[0].isupper() or sentence[0].isdigit()
     assert "  " not in sentence
@@ -179,7 +188,7 @@ def test_every_state_draws(rigs: dict[str, Rig], sim: AnySim, name: str, params:
     assert rig.session.params == params
     assert not rig.problems()
     assert rig.column.version == model.version == rig.session.version
-    solution = sim.solve(params)
+    solution = solved(sim, name, params)
     fresh = Column(sim)
     parts, own = fresh.of(params, solution)
     assert rig.column.parts == parts
@@ -279,7 +288,7 @@ def test_the_dark_theme_changes_looks_alone(sim: AnySim) -> None:
 @each_state
 def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
     """Every part that a state has is on the page that begins with it, and the markup is sound."""
-    column, solution = Column(sim), sim.solve(params)
+    column, solution = Column(sim), solved(sim, name, params)
     html = column.html(params, solution)
     assert not [bad for bad in bad_attributes(html) if not bad.startswith(("option", "button"))]  # which say "none"
     page = xml(html)
@@ -307,7 +316,7 @@ def test_controls_are_arranged_without_loss(sim: AnySim, name: str, params: Para
 
 @each_state
 def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) -> None:
-    caption = sim.caption(params, sim.solve(params))
+    caption = sim.caption(params, solved(sim, name, params))
     assert caption.endswith(".")
     assert caption[0].isupper() or caption.startswith("q ")
     assert len(caption) <= 120
