@@ -300,6 +300,49 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
     assert tall == [], "labels that take two lines"
 
 
+def test_in_a_low_frame_two_pictures_follow_the_sentence_about_them(column: Open) -> None:
+    for slug in ("epipolar", "triangulation"):
+        learner = column(f"{slug}/embed", size=ViewportSize(width=560, height=315))
+        caption, primary = (box(learner.frame.locator(each)) for each in (".s3-caption", ".s3-primary"))
+        for side in ("left", "right"):
+            picture = box(learner.frame.locator(f"svg[data-pane={side}]"))
+            assert caption["y"] + caption["height"] <= picture["y"], f"{slug}: the {side} picture"
+            assert picture["y"] + picture["height"] <= primary["y"], f"{slug}: the {side} picture is out of sight"
+
+
+def test_a_strip_stands_above_the_rest_and_is_read_to_its_end(column: Open) -> None:
+    learner = column("camera/embed?challenge=shift", size=ViewportSize(width=700, height=600))
+    tops = [box(learner.frame.locator(each))["y"] for each in (".s3-strip", ".s3-caption", ".s3-panes")]
+    assert tops == sorted(tops)
+    away = learner.frame.locator(".s3-strip").get_by_text("px to go")
+    assert away.evaluate("node => getComputedStyle(node).borderStyle") == "none", "it is no warning"
+    learner = column("quaternion/embed?lesson=1", size=ViewportSize(width=560, height=315))
+    cut = "all => all.filter((n) => n.scrollWidth > n.clientWidth + 1 || n.scrollHeight > n.clientHeight + 1).length"
+    assert learner.frame.locator(".s3-strip :is(b, p)").evaluate_all(cut) == 0
+
+
+def test_what_is_nearly_wrong_has_the_colour_of_warnings(column: Open) -> None:
+    learner = column("gimbal-lock/embed?pitch=80")
+    colours = "node => ((style) => [style.color, style.borderTopColor])(getComputedStyle(node))"
+    ink, border = learner.frame.locator(".s3-note.s3-near").evaluate(colours)
+    assert ink == border
+
+
+# Of each factor in a chain's strip: how wide its numbers are, and how wide they may be.
+FACTORS = """() => [...document.querySelectorAll(".s3-stage:has(math)")].map((stage) =>
+    [stage.querySelector("math").getBoundingClientRect().width, stage.clientWidth])"""
+
+
+def test_the_factors_of_a_chain_show_their_numbers_in_a_narrow_column(column: Open) -> None:
+    all_negative = "angles=-150,-140,-130&lengths=1,1.8,0.5&axes=zzz&twists=-40,-50,-30"
+    learner = column(f"transform-chain/embed?{all_negative}", size=ViewportSize(width=700, height=600))
+    for size in (ViewportSize(width=700, height=600), ViewportSize(width=390, height=780)):
+        learner.page.set_viewport_size(size)
+        factors = learner.frame.evaluate(FACTORS)
+        assert len(factors) == 3
+        assert all(0 < wide <= room for wide, room in factors), factors
+
+
 COVERED = """() => [...document.querySelectorAll(".s3-column :is(input, select, button, summary)")].filter((node) => {
     if (!node.checkVisibility() || node.matches(".s3-primary")) return false;
     node.focus();
