@@ -11,6 +11,7 @@ from playwright.sync_api import ViewportSize
 from sims import SIMS
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import LIT, THUMB, Learner, box
+from tests.e2e.test_phone import touch
 
 Open = Callable[..., Learner]
 PASTE = """([node, text]) => {
@@ -172,6 +173,40 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     held(learner, pitch=90)
     assert box(slider)["y"] == pytest.approx(track["y"], abs=1)
     mouse.up()
+
+
+def test_what_is_moved_by_keys_stays_in_sight_whatever_is_said_above_it(column: Open) -> None:
+    learner = column("triangulation/embed", size=ViewportSize(width=700, height=600))
+    slider, primary = learner.control("slider", "baseline"), learner.frame.locator(".s3-primary")
+    slider.focus()
+    assert box(slider)["y"] + box(slider)["height"] <= box(primary)["y"]
+    before = box(learner.frame.locator(".s3-key"))
+    learner.page.keyboard.press("Home")
+    held(learner, baseline=0.05)
+    learner.until(lambda: "shorter baseline" in (learner.frame.locator(".s3-caption").text_content() or ""))
+    after = box(learner.frame.locator(".s3-key"))
+    assert after["height"] + after["y"] != before["height"] + before["y"], "the text above is as high as before"
+    learner.until(lambda: box(slider)["y"] + box(slider)["height"] <= box(primary)["y"])
+
+
+def test_a_finger_on_its_way_past_a_slider_moves_nothing(column: Open) -> None:
+    learner = column("euler-angles/embed", size=ViewportSize(width=390, height=780), has_touch=True, is_mobile=True)
+    slider = learner.control("slider", "yaw")
+    slider.scroll_into_view_if_needed()
+    track, before = box(slider), learner.sockets.state["version"]
+    x, y = track["x"] + 0.8 * track["width"], track["y"] + track["height"] / 2
+    touch(learner, *((x, y - 9 * k) for k in range(14)))
+    learner.until(lambda: learner.frame.evaluate("document.querySelector('.s3-column').scrollTop") > 50)
+    learner.until(lambda: float(slider.input_value()) == 30)
+    assert learner.sockets.state["version"] == before
+
+    slider.scroll_into_view_if_needed()
+    track = box(slider)
+    x, y = track["x"] + 0.8 * track["width"], track["y"] + track["height"] / 2
+    touch(learner, (x, y))
+    held(learner, yaw=pytest.approx(116, abs=6))  # a tap leads it there
+    touch(learner, *((x - 6 * k, y) for k in range(14)))
+    learner.until(lambda: learner.params["yaw"] < 20)
 
 
 def test_choices_switches_and_lists_answer(column: Open) -> None:
