@@ -189,13 +189,13 @@ export class Controls {
 
   // Something was entered that can't be taken: it stays, and the reason stands below.
   refuse(name, words) {
-    const place = control(name);
-    const line = place?.querySelector(".s3-wrong");
+    const line = control(name)?.querySelector(".s3-wrong");
     if (!line) return false;
     line.textContent = words;
     line.hidden = false;
     for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
     this.settle();
+    line.scrollIntoView({ block: "nearest" });
     return true;
   }
 
@@ -227,8 +227,7 @@ function control(name) {
 }
 
 function right(place) {
-  const line = place?.querySelector(".s3-wrong");
-  if (line) line.hidden = true;
+  place?.querySelector(".s3-wrong")?.setAttribute("hidden", "");
   for (const box of place?.querySelectorAll("[aria-invalid]") ?? []) box.removeAttribute("aria-invalid");
 }
 
@@ -247,4 +246,5 @@ function toggle(ask) {
   const why = document.getElementById(ask.getAttribute("aria-controls"));
   why.hidden = !why.hidden;
   ask.setAttribute("aria-expanded", String(!why.hidden));
+  if (!why.hidden) why.scrollIntoView({ block: "nearest" });
 }

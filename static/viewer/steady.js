@@ -7,7 +7,7 @@ export class Steady {
     this.keyed = null; // what keys move, until somebody scrolls or points elsewhere
     document.addEventListener("pointerdown", ({ target }) => this.hold(target), true);
     document.addEventListener("wheel", () => (this.keyed = null), { passive: true, capture: true });
-    column.addEventListener("keydown", ({ target }) => (this.keyed = target.closest("[data-slide], [data-box], [data-handle]")));
+    column.addEventListener("keydown", ({ target }) => (this.keyed = target.closest("[data-slide], [data-box], [data-handle], summary")));
     for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, () => this.letGo(), true);
   }
 

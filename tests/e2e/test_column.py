@@ -22,7 +22,7 @@ PASTE = """([node, text]) => {
     node.dispatchEvent(new InputEvent("input", { bubbles: true }));
 }"""
 # What can be pressed, typed into or chosen, and how large it is.
-TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select, input, summary)")]
+TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select, input, summary, a)")]
     .filter((node) => node.checkVisibility() && node.type !== "radio")
     .map((node) => [(node.closest("label") ?? node), node])
     .map(([label, node]) => [label.getBoundingClientRect(), node.outerHTML.slice(0, 90)])
@@ -189,6 +189,39 @@ def test_what_is_moved_by_keys_stays_in_sight_whatever_is_said_above_it(column: 
     learner.until(lambda: box(slider)["y"] + box(slider)["height"] <= box(primary)["y"])
 
 
+def test_a_fold_that_is_opened_by_keys_stays_in_sight_when_a_picture_comes_above_it(column: Open) -> None:
+    learner = column("quaternion/embed", size=ViewportSize(width=390, height=780))
+    fold = learner.frame.locator('summary:has-text("Two turns")')
+    fold.press("Enter")
+    learner.until(lambda: learner.params["show"] == "order")
+    learner.until(lambda: "Two turns" in learner.frame.evaluate("document.activeElement.textContent"))
+    learner.until(lambda: box(fold)["y"] + box(fold)["height"] <= 780)
+    learner.until(lambda: box(fold)["y"] >= box(learner.frame.locator(".s3-column"))["y"])
+
+
+def test_what_is_wrong_and_what_is_asked_come_in_sight(column: Open) -> None:
+    """Under a control at the foot of the column, where a button lies."""
+    learner = column("gimbal-lock/embed", size=ViewportSize(width=390, height=780))
+    primary = learner.frame.locator(".s3-primary")
+    learner.type("yaw", "1e9")
+    wrong = learner.frame.locator('[data-control="yaw"] .s3-wrong')
+    wrong.wait_for()
+    learner.until(lambda: box(wrong)["y"] + box(wrong)["height"] <= box(primary)["y"])
+    learner.frame.locator('[data-control="roll"] .s3-ask').press("Enter")
+    why = learner.frame.locator('[data-control="roll"] .s3-why')
+    learner.until(lambda: box(why)["y"] + box(why)["height"] <= box(primary)["y"])
+
+
+def test_a_long_dialog_begins_at_its_beginning(column: Open) -> None:
+    learner = column("gimbal-lock/embed", size=ViewportSize(width=390, height=600))
+    learner.page.keyboard.press("?")
+    keys = learner.page.get_by_role("dialog", name="Keys")
+    keys.wait_for()
+    assert keys.evaluate("node => [node.scrollTop, node.contains(document.activeElement)]") == [0, True]
+    learner.page.keyboard.press("Escape")
+    keys.wait_for(state="hidden")
+
+
 def test_a_finger_on_its_way_past_a_slider_moves_nothing(column: Open) -> None:
     learner = column("euler-angles/embed", size=ViewportSize(width=390, height=780), has_touch=True, is_mobile=True)
     slider = learner.control("slider", "yaw")
@@ -301,7 +334,8 @@ NARROW = """() => [...document.querySelectorAll("[data-box]")].filter((box) => {
 STRAY = """() => [...document.querySelectorAll(".s3-vector > .s3-unit")].filter((unit) => {
     const boxes = unit.parentElement.querySelectorAll("input");
     const [beside, at] = [boxes[boxes.length - 1], unit].map((node) => node.getBoundingClientRect());
-    return unit.checkVisibility() && (at.left < beside.right || at.top < beside.top || at.bottom > beside.bottom);
+    const apart = at.left < beside.right || at.left > beside.right + 20 || at.top < beside.top || at.bottom > beside.bottom;
+    return unit.checkVisibility() && apart;
 }).map((unit) => unit.parentElement.dataset.vector)"""
 SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
 

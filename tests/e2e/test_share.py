@@ -71,6 +71,14 @@ def test_the_dialog_follows_its_options_and_gives_the_focus_back(classroom: Clas
     assert not dialog.count()
 
 
+def test_the_dialog_fits_a_phone(classroom: Classroom) -> None:
+    learner = classroom.open_column("quaternion/embed", size={"width": 390, "height": 780})
+    learner.find("button", "Share").press("Enter")
+    dialog = learner.page.get_by_role("dialog", name="Share Quaternions")
+    dialog.wait_for()
+    assert dialog.evaluate("node => node.scrollWidth - node.clientWidth") == 0
+
+
 def test_a_lesson_is_shared_with_the_state_and_the_view_of_its_sim(classroom: Classroom) -> None:
     learner = classroom.open_column("euler-angles/embed")
     page = learner.page
