@@ -377,6 +377,8 @@ def test_in_a_low_frame_two_pictures_follow_the_sentence_about_them(column: Open
             picture = box(learner.frame.locator(f"svg[data-pane={side}]"))
             assert caption["y"] + caption["height"] <= picture["y"], f"{slug}: the {side} picture"
             assert picture["y"] + picture["height"] <= primary["y"], f"{slug}: the {side} picture is out of sight"
+        ends = [box(learner.frame.locator(each))["y"] for each in (".s3-wide", ".s3-toolbar", ".s3-about")]
+        assert ends == sorted(ends), f"{slug}: what comes after the controls"
 
 
 def test_a_strip_stands_above_the_rest_and_is_read_to_its_end(column: Open) -> None:
