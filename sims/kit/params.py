@@ -20,7 +20,7 @@ from sims.kit.spelling import clipped, meant, spans, spell
 LONGEST_VALUE = 400
 """Characters of one value in a query; a longer one is refused unread."""
 MOST_COMPLAINTS = 20
-DECIMALS = 6
+DECIMALS = 9
 """Places after the point in what a hand leads to: degrees, metres or pixels."""
 
 

@@ -323,7 +323,7 @@ def test_what_a_hand_leads_to_is_short_in_a_link_and_what_was_typed_is_exact() -
     async def test() -> None:
         room = Room()
         room.session.drag("/grip", (7.123456789012345, 0.0, 0.0))
-        assert room.session.params == ToyParams(size=7.123457)
+        assert room.session.params == ToyParams(size=7.123456789)
         room.session.drag("/grip", (7.123456789012345, 0.0, 0.0), exact=True)
         assert room.session.params == ToyParams(size=7.123456789012345)
 

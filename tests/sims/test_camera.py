@@ -533,7 +533,7 @@ def test_grips_move_and_turn_the_camera_and_the_numbers_agree(rig: Rig) -> None:
     p = rig.session.params
     assert isinstance(p, CameraParams)
     toward = np.array(aim) - p.position
-    np.testing.assert_allclose(pose(p)[0][2], toward / np.linalg.norm(toward), rtol=0, atol=1e-8)
+    np.testing.assert_allclose(pose(p)[0][2], toward / np.linalg.norm(toward), rtol=0, atol=1e-9)
     assert p.roll == 20.0
     assert rig.column.values["pan"] == pytest.approx(p.pan)
     assert rig.column.values["tilt"] == pytest.approx(p.tilt)

@@ -334,4 +334,4 @@ def test_shift_drags_along_one_axis(stereo: Rig) -> None:
     x, y, z = stereo.model.world_pose("/point")[:3, 3].tolist()
     stereo.browser.drag("/point", (x + 0.02, y + 0.5, z + 0.03), modifier="shift")
     stereo.settle()
-    np.testing.assert_allclose(stereo.model.world_pose("/point")[:3, 3], (x, y + 0.5, z), rtol=0, atol=1e-8)
+    np.testing.assert_allclose(stereo.model.world_pose("/point")[:3, 3], (x, y + 0.5, z), rtol=0, atol=1e-9)
