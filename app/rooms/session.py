@@ -30,7 +30,7 @@ from geometry import GeometryError
 from sims.kit.challenge import checked
 from sims.kit.entered import entered, number, row
 from sims.kit.fields import Numbers, Slider
-from sims.kit.params import Params
+from sims.kit.params import Params, by_hand
 from sims.kit.sim import Dial, Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
@@ -120,7 +120,7 @@ class Session:
     def slide(self, name: str, value: float) -> None:
         """Take what a slider is moved to: of a parameter, or as `angles.2` of one of its entries."""
         if (dial := self._dial(name)) is not None:
-            self.drag(name, (min(max(value, dial.low), dial.high),))
+            self.drag(name, (min(max(value, dial.low), dial.high),), exact=True)
             return
         field, dot, part = name.partition(".")
         kind = self.params.kinds.get(field)
@@ -135,7 +135,7 @@ class Session:
             self._enter_place(name, text)
             return
         if (dial := self._dial(name)) is not None:
-            self.drag(name, (number(text, (dial.low, dial.high), dial.unit),))
+            self.drag(name, (number(text, (dial.low, dial.high), dial.unit),), exact=True)
             return
         try:
             changes = entered(self.sim.offers(self.params, self.solution, *self.given), name, text)
@@ -167,24 +167,29 @@ class Session:
         ranges = list(zip(typed.low, typed.high, strict=True))
         if k:
             at = number(text, ranges[int(k)], typed.unit)
-            self.drag(handle, (*place[: int(k)], at, *place[int(k) + 1 :]))
+            self.drag(handle, (*place[: int(k)], at, *place[int(k) + 1 :]), exact=True)
         else:
-            self.drag(handle, row(text, ranges, typed.unit))
+            self.drag(handle, row(text, ranges, typed.unit), exact=True)
 
-    def drag(self, name: str, place: tuple[float, ...]) -> None:
-        """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels)."""
-        self._hold("handle", self.sim.handles, name, place)
+    def drag(self, name: str, place: tuple[float, ...], *, exact: bool = False) -> None:
+        """Take the place where a handle was dragged to, in the scene (metres) or a picture (pixels).
+
+        Unless it is `exact`, as a slider's and what was typed is, it leads to numbers as fine as a hand can mean.
+        """
+        take = self.change if exact else lambda changes: self.change(by_hand(changes))
+        self._hold("handle", self.sim.handles, name, place, take)
 
     def click(self, name: str, ray: tuple[float, ...]) -> None:
         """Take a click on a node of the scene: the origin and direction of its ray."""
-        self._hold("node to click", self.sim.clicks, name, ray)
+        self._hold("node to click", self.sim.clicks, name, ray, self.change)
 
     def _hold(
-        self, kind: str, known: Mapping[str, Callable[..., Mapping[str, Any]]], name: str, place: tuple[float, ...]
-    ) -> None:
+        self, kind: str, known: Mapping[str, Callable[..., Mapping[str, Any]]], name: str, place: tuple[float, ...],
+        take: Callable[[Mapping[str, Any]], None],
+    ) -> None:  # fmt: skip
         if (held := known.get(name)) is None:
             raise Unknown(kind, name, known)
-        self._find(lambda: held(self.params, place, *self.given), self.change, "place")
+        self._find(lambda: held(self.params, place, *self.given), take, "place")
 
     def select(self, name: str) -> None:
         """Select what is linked under a name; nothing happens where that can't be selected."""

@@ -20,6 +20,8 @@ from sims.kit.spelling import clipped, meant, spans, spell
 LONGEST_VALUE = 400
 """Characters of one value in a query; a longer one is refused unread."""
 MOST_COMPLAINTS = 20
+DECIMALS = 9
+"""Places after the point in what a hand leads to: degrees, metres or pixels."""
 
 
 class Params(BaseModel):
@@ -200,6 +202,17 @@ def with_entries(changes: Mapping[str, Any], entries: Callable[[str], Any]) -> d
             put = value if isinstance(before, str) else (value,)
             whole[field] = before[: int(k)] + put + before[int(k) + 1 :]
     return whole
+
+
+def by_hand(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """What a hand leads to, in numbers that are finer than any hand and still short in a link."""
+    return {name: _rounded(value) for name, value in changes.items()}
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    return round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
 
 
 def _kind(model: type[Params], name: str, field: FieldInfo) -> Kind:

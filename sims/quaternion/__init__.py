@@ -51,8 +51,8 @@ SIM = Sim(
         Action("undo", "Undo last turn", "Take back the last turn made", actions.undo, COMPOSED),
     ),
     handles={
-        "/tip": actions.hold_tip, "/angle": actions.hold_angle, "/object": actions.hold_object,
-        "/point": actions.hold_point, "t": actions.hold_t,
+        "/tip": actions.hold_tip, "/axis": actions.hold_axis, "/angle": actions.hold_angle,
+        "/object": actions.hold_object, "/point": actions.hold_point, "t": actions.hold_t,
         "theta": dial.hold_theta, "half": dial.hold_half, "q": ball.hold_q, "minus_q": ball.hold_minus_q,
     },
     challenges=CHALLENGES,

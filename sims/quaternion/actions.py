@@ -31,6 +31,12 @@ def hold_tip(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
     return {} if length < 0.05 else {"axis": _rounded(v / length for v in place)}
 
 
+def hold_axis(p: QuaternionParams, held: tuple[float, ...]) -> dict[str, Any]:
+    """A spot of the axis, in the frame that turns with it, was pulled to a place in the world."""
+    R = pulled(quaternion.to_matrix(solve(p).axis_frame), held)
+    return {} if R is None else {"axis": _rounded(R[:, 2].tolist())}
+
+
 def hold_angle(p: QuaternionParams, place: tuple[float, ...]) -> dict[str, Any]:
     """The angle at which its arc ends where it is led to."""
     x, y, _ = (quaternion.to_matrix(solve(p).axis_frame).T @ place).tolist()

@@ -6,9 +6,9 @@ import math
 from functools import partial
 
 import numpy as np
+import trimesh
 
 from geometry import quaternion
-from geometry.arrays import Array
 from sims.kit.readout import quantity
 from sims.kit.scene.stage import Stage
 from sims.quaternion.params import TIP, WHOLE, QuaternionParams
@@ -21,7 +21,9 @@ ARC, HEIGHT = 0.42, 1.4
 BESIDE = 0.72
 """Metres from the axis to the angle in words: clear of what the arc is held by."""
 LEAST = 0.6
-"""Metres from the object's middle within which it is turned as a ball of that radius."""
+"""Metres from the middle within which the object, or its axis, is turned as a ball of that radius."""
+GRASP = trimesh.creation.cylinder(radius=0.07, segment=[(0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.1)], sections=12)
+"""What is held of the axis' arrow: wider than it is, for fingers."""
 LAP = 0.12
 """How far below the arc the circle of the first whole turn is, once the angle is in its second."""
 
@@ -77,12 +79,15 @@ class Ghost:
 
 
 class Axis:
-    """The axis as an arrow whose tip the learner holds, and the arc of the angle about it."""
+    """The axis as an arrow, held by its tip or anywhere along it, and the arc of the angle about it."""
 
     def __init__(self, stage: Stage) -> None:
         self.frame = stage.group("/axis")
         arrow = stage.arrow("/axis/arrow", "held", (0.0, 0.0, 0.0), (0.0, 0.0, TIP - 0.03), radius=0.018)
         stage.linked("axis", arrow)
+        self.R = np.eye(3)
+        grasp = stage.mesh("/axis/grasp", GRASP, "held", opacity=0.0)  # arrows can't be held
+        stage.pulled([grasp], "/axis", partial(getattr, self, "R"), least=LEAST)
         stage.lines("/axis/back", "held", [(0.0, 0.0, 0.0), (0.0, 0.0, -TIP)], width=1.5, dash=(0.06, 0.05))
         self.turn = stage.group("/axis/turn")
         self.turn.pose(position=(0.0, 0.0, HEIGHT))
@@ -104,7 +109,7 @@ class Axis:
         self.tip.show(visible)
         self.hand.show(visible)
         self.n = s.n
-        frame: Array = quaternion.to_matrix(s.axis_frame)
+        self.R = frame = quaternion.to_matrix(s.axis_frame)
         radians = math.radians(p.angle)
         self.hand.pose(position=(frame @ (ARC * math.cos(radians), ARC * math.sin(radians), HEIGHT)).tolist())
         self.frame.pose(s.axis_frame.tolist())

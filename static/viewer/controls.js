@@ -4,6 +4,7 @@ import { stepped, text } from "./numbers.js";
 import { column, sim } from "./page.js";
 
 const PAUSE = 900; // milliseconds without a key after which what was typed is finished
+const TREMBLE = 3; // pixels that a finger goes without meaning it
 
 export class Controls {
   constructor(channel, pace) {
@@ -11,7 +12,7 @@ export class Controls {
     this.pace = pace;
     this.known = {}; // what the server says that each input shows
     this.typing = 0;
-    this.held = null; // the slider under a hand
+    this.held = this.touched = null; // the slider under a hand, and where a finger came down that may be on its way past
     column.addEventListener("input", (event) => this.input(event.target));
     column.addEventListener("change", (event) => this.change(event.target));
     column.addEventListener("keydown", (event) => this.key(event));
@@ -19,8 +20,9 @@ export class Controls {
     column.addEventListener("focusin", ({ target }) => target.dataset.box && target.type === "text" && this.begin(target));
     column.addEventListener("focusout", ({ target }) => target.dataset.box && this.finish(target));
     column.addEventListener("dblclick", ({ target }) => target.dataset.default && this.slide(target, Number(target.dataset.default)));
-    column.addEventListener("pointerdown", ({ target }) => (this.held = target.dataset.slide ? target : null));
-    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => this.letGo());
+    column.addEventListener("pointerdown", (event) => this.hold(event));
+    column.addEventListener("pointermove", (event) => this.lead(event));
+    for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => this.letGo(kind));
     column.addEventListener("click", (event) => this.click(event.target));
     column.addEventListener("paste", (event) => this.paste(event));
     column.addEventListener("toggle", ({ target }) => target.dataset.fold && this.fold(target), true);
@@ -29,6 +31,7 @@ export class Controls {
   // ---- sliders
 
   input(input) {
+    if (input.dataset.slide && this.touched) return;
     if (input.dataset.slide) this.slide(input, stepped(input));
     else if (input.dataset.box) {
       clearTimeout(this.typing);
@@ -46,9 +49,22 @@ export class Controls {
     this.pace.put(name, { type: "slide", name, value: within });
   }
 
-  letGo() {
-    if (!this.held) return;
-    this.held = null;
+  // A browser moves a slider to where a finger comes down. Nothing is meant by it before that goes along it, or is lifted.
+  hold({ target, pointerType, clientX, clientY }) {
+    this.held = target.dataset.slide ? target : null;
+    this.touched = this.held && pointerType === "touch" ? [clientX, clientY] : null;
+  }
+
+  lead({ clientX, clientY }) {
+    const [x, y] = this.touched ?? [clientX, clientY];
+    if (Math.abs(clientX - x) > Math.max(Math.abs(clientY - y), TREMBLE)) this.touched = null;
+  }
+
+  letGo(kind) {
+    const { held, touched } = this;
+    if (!held) return;
+    this.held = this.touched = null;
+    if (touched && kind === "pointerup") this.slide(held, stepped(held));
     if (this.pace.idle) this.settle();
   }
 
@@ -85,10 +101,8 @@ export class Controls {
     this.enter(dataset.fold, open ? dataset.open : dataset.closed);
   }
 
-  paste(event) {
-    const box = event.target;
-    if (!box.dataset?.box) return;
-    setTimeout(() => this.finish(box));
+  paste({ target }) {
+    if (target.dataset?.box) setTimeout(() => this.finish(target));
   }
 
   nudge(box, steps) {
@@ -175,13 +189,13 @@ export class Controls {
 
   // Something was entered that can't be taken: it stays, and the reason stands below.
   refuse(name, words) {
-    const place = control(name);
-    const line = place?.querySelector(".s3-wrong");
+    const line = control(name)?.querySelector(".s3-wrong");
     if (!line) return false;
     line.textContent = words;
     line.hidden = false;
     for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
     this.settle();
+    line.scrollIntoView({ block: "nearest" });
     return true;
   }
 
@@ -197,10 +211,9 @@ export class Controls {
 
 // The first click into a box selects what is in it, as the Tab key does.
 function selectWhole(event) {
-  const box = event.target;
-  if (!box.dataset.box || box === document.activeElement) return;
+  if (!event.target.dataset.box || event.target === document.activeElement) return;
   event.preventDefault();
-  box.focus();
+  event.target.focus();
 }
 
 function inputs(kind, name) {
@@ -214,8 +227,7 @@ function control(name) {
 }
 
 function right(place) {
-  const line = place?.querySelector(".s3-wrong");
-  if (line) line.hidden = true;
+  place?.querySelector(".s3-wrong")?.setAttribute("hidden", "");
   for (const box of place?.querySelectorAll("[aria-invalid]") ?? []) box.removeAttribute("aria-invalid");
 }
 
@@ -234,4 +246,5 @@ function toggle(ask) {
   const why = document.getElementById(ask.getAttribute("aria-controls"));
   why.hidden = !why.hidden;
   ask.setAttribute("aria-expanded", String(!why.hidden));
+  if (!why.hidden) why.scrollIntoView({ block: "nearest" });
 }

@@ -35,7 +35,7 @@ export class Strip {
     this.tick = element("span", { class: "s3-tick", "aria-hidden": "true" }, this.box);
     this.title = element("b", {}, this.box);
     this.goal = element("span", { class: "s3-goal" }, this.box);
-    this.near = element("span", { class: "s3-near" }, this.box);
+    this.near = element("span", { class: "s3-away" }, this.box);
     this.live = element("span", { role: "status", class: "s3-hidden" }, this.strip);
   }
 

@@ -109,7 +109,7 @@ export class View {
     tellCamera();
     if (event.pointerType !== "touch") delete scene.dataset.shared;
     else addEventListener("pointerup", () => delete scene.dataset.shared, { once: true });
-    sceneCanvas()?.focus({ preventScroll: true });
+    sceneCanvas()?.focus({ preventScroll: true, focusVisible: false });
   }
 
   // A hand that moves the scene leads its view; a mere click doesn't.

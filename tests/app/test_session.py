@@ -319,6 +319,17 @@ def test_dragging_a_handle_is_kept_within_bounds() -> None:
     run(test)
 
 
+def test_what_a_hand_leads_to_is_short_in_a_link_and_what_was_typed_is_exact() -> None:
+    async def test() -> None:
+        room = Room()
+        room.session.drag("/grip", (7.123456789012345, 0.0, 0.0))
+        assert room.session.params == ToyParams(size=7.123456789)
+        room.session.drag("/grip", (7.123456789012345, 0.0, 0.0), exact=True)
+        assert room.session.params == ToyParams(size=7.123456789012345)
+
+    run(test)
+
+
 def test_a_button_leads_to_the_next_state() -> None:
     async def test() -> None:
         room = Room()

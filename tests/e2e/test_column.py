@@ -11,6 +11,7 @@ from playwright.sync_api import ViewportSize
 from sims import SIMS
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import LIT, THUMB, Learner, box
+from tests.e2e.test_phone import touch
 
 Open = Callable[..., Learner]
 PASTE = """([node, text]) => {
@@ -21,7 +22,7 @@ PASTE = """([node, text]) => {
     node.dispatchEvent(new InputEvent("input", { bubbles: true }));
 }"""
 # What can be pressed, typed into or chosen, and how large it is.
-TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select, input, summary)")]
+TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select, input, summary, a)")]
     .filter((node) => node.checkVisibility() && node.type !== "radio")
     .map((node) => [(node.closest("label") ?? node), node])
     .map(([label, node]) => [label.getBoundingClientRect(), node.outerHTML.slice(0, 90)])
@@ -174,6 +175,73 @@ def test_what_is_held_stays_under_the_hand_whatever_is_said_above_it(column: Ope
     mouse.up()
 
 
+def test_what_is_moved_by_keys_stays_in_sight_whatever_is_said_above_it(column: Open) -> None:
+    learner = column("triangulation/embed", size=ViewportSize(width=700, height=600))
+    slider, primary = learner.control("slider", "baseline"), learner.frame.locator(".s3-primary")
+    slider.focus()
+    assert box(slider)["y"] + box(slider)["height"] <= box(primary)["y"]
+    before = box(learner.frame.locator(".s3-key"))
+    learner.page.keyboard.press("Home")
+    held(learner, baseline=0.05)
+    learner.until(lambda: "shorter baseline" in (learner.frame.locator(".s3-caption").text_content() or ""))
+    after = box(learner.frame.locator(".s3-key"))
+    assert after["height"] + after["y"] != before["height"] + before["y"], "the text above is as high as before"
+    learner.until(lambda: box(slider)["y"] + box(slider)["height"] <= box(primary)["y"])
+
+
+def test_a_fold_that_is_opened_by_keys_stays_in_sight_when_a_picture_comes_above_it(column: Open) -> None:
+    learner = column("quaternion/embed", size=ViewportSize(width=390, height=780))
+    fold = learner.frame.locator('summary:has-text("Two turns")')
+    fold.press("Enter")
+    learner.until(lambda: learner.params["show"] == "order")
+    learner.until(lambda: "Two turns" in learner.frame.evaluate("document.activeElement.textContent"))
+    learner.until(lambda: box(fold)["y"] + box(fold)["height"] <= 780)
+    learner.until(lambda: box(fold)["y"] >= box(learner.frame.locator(".s3-column"))["y"])
+
+
+def test_what_is_wrong_and_what_is_asked_come_in_sight(column: Open) -> None:
+    """Under a control at the foot of the column, where a button lies."""
+    learner = column("gimbal-lock/embed", size=ViewportSize(width=390, height=780))
+    primary = learner.frame.locator(".s3-primary")
+    learner.type("yaw", "1e9")
+    wrong = learner.frame.locator('[data-control="yaw"] .s3-wrong')
+    wrong.wait_for()
+    learner.until(lambda: box(wrong)["y"] + box(wrong)["height"] <= box(primary)["y"])
+    learner.frame.locator('[data-control="roll"] .s3-ask').press("Enter")
+    why = learner.frame.locator('[data-control="roll"] .s3-why')
+    learner.until(lambda: box(why)["y"] + box(why)["height"] <= box(primary)["y"])
+
+
+def test_a_long_dialog_begins_at_its_beginning(column: Open) -> None:
+    learner = column("gimbal-lock/embed", size=ViewportSize(width=390, height=600))
+    learner.page.keyboard.press("?")
+    keys = learner.page.get_by_role("dialog", name="Keys")
+    keys.wait_for()
+    assert keys.evaluate("node => [node.scrollTop, node.contains(document.activeElement)]") == [0, True]
+    learner.page.keyboard.press("Escape")
+    keys.wait_for(state="hidden")
+
+
+def test_a_finger_on_its_way_past_a_slider_moves_nothing(column: Open) -> None:
+    learner = column("euler-angles/embed", size=ViewportSize(width=390, height=780), has_touch=True, is_mobile=True)
+    slider = learner.control("slider", "yaw")
+    slider.scroll_into_view_if_needed()
+    track, before = box(slider), learner.sockets.state["version"]
+    x, y = track["x"] + 0.8 * track["width"], track["y"] + track["height"] / 2
+    touch(learner, *((x, y - 9 * k) for k in range(14)))
+    learner.until(lambda: learner.frame.evaluate("document.querySelector('.s3-column').scrollTop") > 50)
+    learner.until(lambda: float(slider.input_value()) == 30)
+    assert learner.sockets.state["version"] == before
+
+    slider.scroll_into_view_if_needed()
+    track = box(slider)
+    x, y = track["x"] + 0.8 * track["width"], track["y"] + track["height"] / 2
+    touch(learner, (x, y))
+    held(learner, yaw=pytest.approx(116, abs=6))  # a tap leads it there
+    touch(learner, *((x - 6 * k, y) for k in range(14)))
+    learner.until(lambda: learner.params["yaw"] < 20)
+
+
 def test_choices_switches_and_lists_answer(column: Open) -> None:
     learner = column("transform-chain/embed")
     learner.choose("axes.0", "x")
@@ -266,7 +334,8 @@ NARROW = """() => [...document.querySelectorAll("[data-box]")].filter((box) => {
 STRAY = """() => [...document.querySelectorAll(".s3-vector > .s3-unit")].filter((unit) => {
     const boxes = unit.parentElement.querySelectorAll("input");
     const [beside, at] = [boxes[boxes.length - 1], unit].map((node) => node.getBoundingClientRect());
-    return unit.checkVisibility() && (at.left < beside.right || at.top < beside.top || at.bottom > beside.bottom);
+    const apart = at.left < beside.right || at.left > beside.right + 20 || at.top < beside.top || at.bottom > beside.bottom;
+    return unit.checkVisibility() && apart;
 }).map((unit) => unit.parentElement.dataset.vector)"""
 SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
 
@@ -298,6 +367,51 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
         "all => all.filter((l) => l.clientHeight > 27).map((l) => l.innerText)"
     )
     assert tall == [], "labels that take two lines"
+
+
+def test_in_a_low_frame_two_pictures_follow_the_sentence_about_them(column: Open) -> None:
+    for slug in ("epipolar", "triangulation"):
+        learner = column(f"{slug}/embed", size=ViewportSize(width=560, height=315))
+        caption, primary = (box(learner.frame.locator(each)) for each in (".s3-caption", ".s3-primary"))
+        for side in ("left", "right"):
+            picture = box(learner.frame.locator(f"svg[data-pane={side}]"))
+            assert caption["y"] + caption["height"] <= picture["y"], f"{slug}: the {side} picture"
+            assert picture["y"] + picture["height"] <= primary["y"], f"{slug}: the {side} picture is out of sight"
+        ends = [box(learner.frame.locator(each))["y"] for each in (".s3-wide", ".s3-toolbar", ".s3-about")]
+        assert ends == sorted(ends), f"{slug}: what comes after the controls"
+
+
+def test_a_strip_stands_above_the_rest_and_is_read_to_its_end(column: Open) -> None:
+    learner = column("camera/embed?challenge=shift", size=ViewportSize(width=700, height=600))
+    tops = [box(learner.frame.locator(each))["y"] for each in (".s3-strip", ".s3-caption", ".s3-panes")]
+    assert tops == sorted(tops)
+    away = learner.frame.locator(".s3-strip").get_by_text("px to go")
+    assert away.evaluate("node => getComputedStyle(node).borderStyle") == "none", "it is no warning"
+    learner = column("quaternion/embed?lesson=1", size=ViewportSize(width=560, height=315))
+    cut = "all => all.filter((n) => n.scrollWidth > n.clientWidth + 1 || n.scrollHeight > n.clientHeight + 1).length"
+    assert learner.frame.locator(".s3-strip :is(b, p)").evaluate_all(cut) == 0
+
+
+def test_what_is_nearly_wrong_has_the_colour_of_warnings(column: Open) -> None:
+    learner = column("gimbal-lock/embed?pitch=80")
+    colours = "node => ((style) => [style.color, style.borderTopColor])(getComputedStyle(node))"
+    ink, border = learner.frame.locator(".s3-note.s3-near").evaluate(colours)
+    assert ink == border
+
+
+# Of each factor in a chain's strip: how wide its numbers are, and how wide they may be.
+FACTORS = """() => [...document.querySelectorAll(".s3-stage:has(math)")].map((stage) =>
+    [stage.querySelector("math").getBoundingClientRect().width, stage.clientWidth])"""
+
+
+def test_the_factors_of_a_chain_show_their_numbers_in_a_narrow_column(column: Open) -> None:
+    all_negative = "angles=-150,-140,-130&lengths=1,1.8,0.5&axes=zzz&twists=-40,-50,-30"
+    learner = column(f"transform-chain/embed?{all_negative}", size=ViewportSize(width=700, height=600))
+    for size in (ViewportSize(width=700, height=600), ViewportSize(width=390, height=780)):
+        learner.page.set_viewport_size(size)
+        factors = learner.frame.evaluate(FACTORS)
+        assert len(factors) == 3
+        assert all(0 < wide <= room for wide, room in factors), factors
 
 
 COVERED = """() => [...document.querySelectorAll(".s3-column :is(input, select, button, summary)")].filter((node) => {

@@ -139,6 +139,8 @@ def test_two_fingers_come_nearer_and_one_turns(classroom: Classroom) -> None:
     touch(learner, (60, 60), *((60 + 8 * k, 60) for k in range(1, 13)))
     learner.until(lambda: not np.allclose(learner.sockets.camera["position"], before, atol=0.05))
     assert away() == pytest.approx(far, rel=0.01)
+    focus = learner.frame.evaluate("['canvas', 'canvas:focus-visible'].map((s) => document.activeElement.matches(s))")
+    assert focus == [True, False], "a finger that turns the scene draws no frame round it"
     touch(learner, *((180 - 8 * k, 100, 210 + 8 * k, 100) for k in range(13)))
     learner.until(lambda: away() < 0.95 * far)
 

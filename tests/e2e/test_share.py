@@ -71,6 +71,14 @@ def test_the_dialog_follows_its_options_and_gives_the_focus_back(classroom: Clas
     assert not dialog.count()
 
 
+def test_the_dialog_fits_a_phone(classroom: Classroom) -> None:
+    learner = classroom.open_column("quaternion/embed", size={"width": 390, "height": 780})
+    learner.find("button", "Share").press("Enter")
+    dialog = learner.page.get_by_role("dialog", name="Share Quaternions")
+    dialog.wait_for()
+    assert dialog.evaluate("node => node.scrollWidth - node.clientWidth") == 0
+
+
 def test_a_lesson_is_shared_with_the_state_and_the_view_of_its_sim(classroom: Classroom) -> None:
     learner = classroom.open_column("euler-angles/embed")
     page = learner.page
@@ -174,3 +182,25 @@ def test_check_says_what_to_ask_for(classroom: Classroom) -> None:
     letter = page.get_by_role("textbox", name="To send to the administrator").input_value()
     assert "Upgrade and Connection" in letter
     assert "WebGL" not in letter
+
+
+# Pixels of each line that stand empty, kept for the other answer.
+EMPTY = """() => [...document.querySelectorAll(".check .either")].map((line) => {
+    const said = new Range();
+    said.selectNodeContents([...line.children].find((each) => getComputedStyle(each).visibility === "visible"));
+    return line.clientHeight - said.getBoundingClientRect().height;
+})"""
+
+
+def test_check_on_a_phone_has_no_gaps_and_still_says_what_to_ask_for(classroom: Classroom) -> None:
+    learner = classroom.enter_alone()
+    page = learner.page
+    learner.witness.expect("WebSocket")
+    page.set_viewport_size({"width": 390, "height": 780})
+    page.goto(f"{learner.url}/check")
+    page.locator(".verdict[data-found=yes]").wait_for()
+    assert max(page.evaluate(EMPTY)) < 3 * 24, "three lines"
+    page.route_web_socket("**/check/socket", lambda socket: socket.close(code=1011))
+    page.reload()
+    page.locator(".verdict[data-found=no]").wait_for()
+    assert "Upgrade" in page.get_by_role("textbox", name="To send to the administrator").input_value()

@@ -557,6 +557,24 @@ def test_the_tip_is_dragged_to_a_direction(rig: Rig) -> None:
     assert rig.session.params.axis == (0.8, -0.6, 0.0), "no direction there: the last one stays"
 
 
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, -0.5, 0.4), (0.0, -2.0, -0.3)])
+@pytest.mark.parametrize("far", [0.9, 1.4])
+def test_the_axis_is_turned_wherever_it_is_taken(rig: Rig, axis: tuple[float, float, float], far: float) -> None:
+    """The spot of its arrow that was taken stays under the pointer."""
+    p = START.changed({"axis": axis})
+    rig.show(p)
+    taken = far * solve(p).n
+    eye = np.asarray(rig.browser.client.camera.position)
+    aim = Rotation.from_rotvec((0.15, -0.2, 0.1)).apply(taken)
+    rig.browser.drag("/axis/grasp", tuple((eye + 1.2 * (aim - eye)).tolist()), taken=tuple(taken.tolist()))
+    rig.settle()
+    now = rig.session.params
+    assert isinstance(now, QuaternionParams)
+    assert now == p.changed({"axis": now.axis})
+    np.testing.assert_allclose(far * rig.session.solution.n, aim, rtol=0, atol=2e-3)
+    near(rig.model.world_pose("/tip")[:3, 3] / 1.7, rig.session.solution.n)
+
+
 @pytest.mark.parametrize("angle", [0.0, 100.0, 359.0, 410.0, 660.0])
 def test_the_object_is_turned_wherever_it_is_taken(rig: Rig, angle: float) -> None:
     """It has come there by one turn from its start, whose q goes on from where it was."""
