@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import base64
 import json
 import re
 from html.parser import HTMLParser
@@ -129,16 +130,27 @@ def test_a_lesson_of_ones_own_is_shared_under_its_own_address(client: httpx.Clie
 
 # ---- codes
 
+# The picture that the page shows, as a PNG: a page that nobody has seen yet may not be photographed.
+ON_BLACK = """async () => {
+    const image = new Image(300, 300);
+    image.src = location.href;
+    await image.decode();
+    const canvas = document.createElementNS("http://www.w3.org/1999/xhtml", "canvas");
+    canvas.width = canvas.height = 300;
+    const pen = canvas.getContext("2d", { alpha: false });
+    pen.drawImage(image, 0, 0, 300, 300);
+    return canvas.toDataURL().split(",")[1];
+}"""
+
 
 def test_a_phone_reads_the_link_from_the_code(client: httpx.Client, server: Server, browser: Browser) -> None:
     link = f"{server.url}/sims/camera/embed?fx=800&view=4,1,2,0,0,0&only=fx,fy&theme=dark"
     address = f"{server.url}/qr?url={quote(link, safe='')}"
     answer = client.get(address)
     assert answer.headers["content-type"] == "image/svg+xml"
-    page = browser.new_page(viewport={"width": 300, "height": 300})
-    page.set_content(f'<body style="margin: 0; background: #000"><img width="300" height="300" src="{address}">')
-    page.wait_for_function("document.images[0].complete && document.images[0].naturalWidth")
-    seen = cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    page = browser.new_page()
+    page.goto(address)
+    seen = cv2.imdecode(np.frombuffer(base64.b64decode(page.evaluate(ON_BLACK)), np.uint8), cv2.IMREAD_COLOR)
     page.close()
     assert seen is not None
     assert cv2.QRCodeDetector().detectAndDecode(seen)[0] == link
