@@ -189,16 +189,6 @@ def test_what_is_moved_by_keys_stays_in_sight_whatever_is_said_above_it(column: 
     learner.until(lambda: box(slider)["y"] + box(slider)["height"] <= box(primary)["y"])
 
 
-def test_a_fold_that_is_opened_by_keys_stays_in_sight_when_a_picture_comes_above_it(column: Open) -> None:
-    learner = column("quaternion/embed", size=ViewportSize(width=390, height=780))
-    fold = learner.frame.locator('summary:has-text("Two turns")')
-    fold.press("Enter")
-    learner.until(lambda: learner.params["show"] == "order")
-    learner.until(lambda: "Two turns" in learner.frame.evaluate("document.activeElement.textContent"))
-    learner.until(lambda: box(fold)["y"] + box(fold)["height"] <= 780)
-    learner.until(lambda: box(fold)["y"] >= box(learner.frame.locator(".s3-column"))["y"])
-
-
 def test_what_is_wrong_and_what_is_asked_come_in_sight(column: Open) -> None:
     """Under a control at the foot of the column, where a button lies."""
     learner = column("gimbal-lock/embed", size=ViewportSize(width=390, height=780))
