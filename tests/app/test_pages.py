@@ -24,7 +24,7 @@ from sims import SIMS
 from sims.kit.palette import DARK, LIGHT
 from sims.kit.sim import Sim
 from tests.app.conftest import PREFIX, Local
-from tests.axe import COLOURS, findings
+from tests.axe import findings
 from tests.browser import COARSE
 from tests.server import Server
 
@@ -318,17 +318,23 @@ def test_page_fits_every_width_and_axe_finds_nothing(used_page: Page, server: Se
     page.emulate_media(color_scheme="light")
     assert findings(page) == []
     page.emulate_media(color_scheme="dark")
-    assert findings(page, COLOURS) == []
+    assert findings(page, colours_alone=True) == []
 
 
 @pytest.mark.e2e
 def test_axe_finds_what_is_wrong(used_page: Page) -> None:
-    """Once of each look: two texts that can't be read on two grounds, and a picture that says nothing."""
+    """Once of each look, but each time: two texts that can't be read on two grounds, a link among words that looks like
+    them (the one that stands alone does so too), and a picture that says nothing.
+    """
     grey = '<p style="color: #aaa">a pale text</p>'
-    bad = f'{grey * 2}<div style="background: #bbb">{grey}</div><img src="data:,">'
-    used_page.set_content(f'<html lang="en"><title>Bad</title><main><h1>Bad</h1><p>good</p>{bad}</main></html>')
-    found = sorted(each.split()[0] for each in findings(used_page))
-    assert found == ["color-contrast", "color-contrast", "image-alt"]
+    link = '<a href="/" style="color: #222; text-decoration: none">a link that is longer</a>'
+    bad = f'{grey * 2}<div style="background: #bbb">{grey}</div><p>among {link[:-13]}</a> more words than it has</p><img src="data:,">'
+    used_page.set_content(
+        f'<html lang="en"><title>Bad</title><main><h1>Bad</h1><p>good</p><p>{link}</p>{bad}</main></html>'
+    )
+    for _ in range(2):
+        found = sorted(each.split()[0] for each in findings(used_page))
+        assert found == ["color-contrast", "color-contrast", "image-alt", "link-in-text-block"]
 
 
 @pytest.mark.e2e

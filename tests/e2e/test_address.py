@@ -9,7 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 from sims.kit.palette import DARK
-from tests.e2e.conftest import Classroom
+from tests.e2e.conftest import DESK, Classroom
+from tests.e2e.learner import box
 from tests.e2e.picture import Picture
 
 
@@ -47,7 +48,7 @@ def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom
 
 
 def test_back_and_forward_keep_working(classroom: Classroom) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter(painted=False)
     page = learner.page
     page.goto(learner.url + "/")
     page.get_by_role("heading", name="Euler angles").get_by_role("link").click()
@@ -70,7 +71,7 @@ def test_back_and_forward_keep_working(classroom: Classroom) -> None:
 
 
 def test_the_sim_page_follows_the_sim(classroom: Classroom) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter(painted=False)
     learner.open_page("euler-angles?yaw=45&theme=light")
     learner.sees(yaw=45)
     learner.type("yaw", "-15")
@@ -105,7 +106,7 @@ def test_share_gives_a_link_to_the_same_state(classroom: Classroom) -> None:
     learner.sees(yaw=123, pitch=50)
 
 
-def test_theme_view_and_controls_of_a_link_work_and_last(classroom: Classroom) -> None:
+def test_theme_and_view_of_a_link_work_and_last(classroom: Classroom) -> None:
     view = "2,-4,1.5,0.1,0,0.2"
     learner = classroom.open(f"euler-angles/embed?theme=dark&view={view}&yaw=-50&pitch=-20")
     for _ in range(2):
@@ -122,12 +123,12 @@ def test_theme_view_and_controls_of_a_link_work_and_last(classroom: Classroom) -
         learner.until(lambda at=at: Picture(learner, DARK).shows("z", at))  # type: ignore[misc]
         learner.reload()
 
-    learner.open("euler-angles/embed?controls=0&yaw=5")
+
+def test_a_link_without_controls_has_only_the_scene(classroom: Classroom) -> None:
+    learner = classroom.open_column("euler-angles/embed?controls=0&yaw=5")
     assert learner.frame.get_by_role("slider").count() == 0
     assert learner.frame.locator(".s3-readouts").count() == 0
-    box = learner.frame.locator("canvas[data-engine]").bounding_box()
-    assert box is not None
-    assert box["width"] == learner.page.viewport_size["width"], "without controls the scene has the whole width"  # type: ignore[index]
+    assert box(learner.frame.locator(".s3-scene"))["width"] == DESK["width"], "the scene has the whole width"
     learner.reload()
     learner.sees(yaw=5)
     assert learner.frame.get_by_role("slider").count() == 0

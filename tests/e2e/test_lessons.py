@@ -54,12 +54,11 @@ def reader(classroom: Classroom) -> Learner:
 
 
 def entered(classroom: Classroom, path: str) -> Learner:
-    learner = classroom.open_column("gimbal-lock/embed", size=DESK, reduced_motion="reduce")
-    return opened(learner, path)
+    return opened(classroom.enter(size=DESK, painted=False, reduced_motion="reduce"), path)
 
 
 def opened(learner: Learner, path: str) -> Learner:
-    learner.leave()  # what this page's sim still says isn't taken for the lesson's
+    learner.sockets.forget()
     learner.page.goto(f"{learner.url}/sims/{path}")
     return at_lesson(learner)
 
@@ -217,7 +216,6 @@ def test_a_link_to_a_step_the_ways_of_the_browser_and_another_tab(classroom: Cla
     assert not between, "under reduced motion nothing glides"
 
     tab = Learner(page.context.new_page(), reader.witness, reader.url)
-    tab.open_column("gimbal-lock/embed")
     opened(tab, "gimbal-lock#the-last-degree")
     state(tab, pitch=89)
     reader.frame.locator("[data-slide=yaw]").press("ArrowRight")
