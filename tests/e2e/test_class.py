@@ -12,15 +12,16 @@ from playwright.sync_api import Frame, Page, ViewportSize, expect
 
 from sims import by_slug
 from tests.e2e.conftest import Classroom
+from tests.e2e.learner import Learner
 
 SLUG = "euler-angles"
 DESK = ViewportSize(width=1280, height=800)
 PHONE = ViewportSize(width=390, height=780)
 
 
-def seat(classroom: Classroom, size: ViewportSize) -> Page:
+def seat(classroom: Classroom, size: ViewportSize) -> Learner:
     """A browser of somebody's own, whose scenes aren't painted."""
-    return classroom.enter(size=size, painted=False).page
+    return classroom.enter(size=size, painted=False)
 
 
 def inside(frame: Frame, selector: str) -> Frame:
@@ -55,10 +56,10 @@ def test_a_class_from_its_link_to_its_end(classroom: Classroom) -> None:
     assert sim is not None
     challenge = next(each for each in sim.challenges if not each.path)
     solves = sim.params().changed(challenge.solves).model_dump(mode="json")
-    url = classroom.server.url
 
-    teacher = seat(classroom, DESK)
-    teacher.goto(f"{url}/class?sim={SLUG}&yaw=45")
+    desk = seat(classroom, DESK)
+    teacher = desk.page
+    teacher.goto(f"{desk.url}/class?sim={SLUG}&yaw=45")
     teacher.select_option("#page", f"sims/{SLUG}")
     teacher.select_option("#challenge", challenge.id)
     teacher.get_by_role("button", name="Open the class").click()
@@ -72,7 +73,7 @@ def test_a_class_from_its_link_to_its_end(classroom: Classroom) -> None:
     assert cv2.QRCodeDetector().detectAndDecode(picture)[0] == link
     teacher.get_by_role("button", name="Close").click()
 
-    ada, bob = (seat(classroom, PHONE) for _ in range(2))
+    ada, bob = (seat(classroom, PHONE).page for _ in range(2))
     for learner in (ada, bob):
         learner.goto(link)
         shows(learner, "yaw=45")

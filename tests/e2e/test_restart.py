@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from playwright.sync_api import ViewportSize, expect
 
+from tests.column import ColumnModel
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite
 from tests.e2e.learner import Learner
@@ -65,8 +66,10 @@ STORIES = {
 """What happens, and what is then said on each of the sockets that were opened."""
 
 
-def came_back(learner: Learner, connections: int, **state: object) -> None:
-    learner.until(lambda: learner.sockets.connected > connections)
+def came_back(learner: Learner, before: ColumnModel, **state: object) -> None:
+    """Wait until somebody's page has begun anew, and shows and draws their state."""
+    learner.until(lambda: learner.sockets.column is not before)
+    learner.wait_live()
     solution = learner.sees(**state)
     learner.until(
         lambda: np.testing.assert_allclose(
@@ -105,7 +108,7 @@ def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: 
         learner = classroom.open("euler-angles/embed?yaw=45", size=SMALL)
         learner.type("roll", "-66")
         learner.sees(yaw=45, roll=-66)
-        watcher = classroom.open(learner.watch_link, size=SMALL)
+        watcher = classroom.open_column(learner.watch_link)
         watcher.sees(roll=-66)
         framed = classroom.enter(size={"width": 720, "height": 640})
         course.show(framed, "euler-angles/embed?pitch=-35")
@@ -115,7 +118,8 @@ def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: 
         reader = in_a_lesson(classroom)
 
         everybody = (learner, watcher, framed)
-        before = [each.sockets.connected for each in everybody]
+        before = [each.sockets.column for each in everybody]
+        connected = learner.sockets.connected
         for each in (*everybody, reader):
             each.witness.expect("WebSocket connection to", "net::ERR_", "Tried to send", "WebSocket error")
         server.kill()
@@ -123,6 +127,7 @@ def test_open_pages_survive_a_crash_of_the_server(classroom: Classroom, server: 
         server.start()
         goes_on(reader)
         came_back(learner, before[0], yaw=45, roll=-64)
+        assert learner.sockets.connected > connected, "the scene that it draws is the old one"
         came_back(watcher, before[1], yaw=45, roll=-64)
         came_back(framed, before[2], pitch=-35)
         assert not framed.page.evaluate("document.querySelector('iframe') === document.activeElement")

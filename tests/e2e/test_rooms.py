@@ -122,7 +122,7 @@ def test_two_browsers_on_the_same_sim_do_not_see_each_other(classroom: Classroom
 
 
 def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom: Classroom) -> None:
-    teacher = classroom.open("euler-angles/embed?yaw=70")
+    teacher = classroom.open_column("euler-angles/embed?yaw=70")
     helper = classroom.open_column(teacher.room)
     watcher = classroom.open_column(teacher.watch_link)
     helper.sees(yaw=70)
@@ -154,7 +154,7 @@ def test_viewers_of_a_room_see_the_same_and_a_watcher_changes_nothing(classroom:
 
 
 def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themselves(classroom: Classroom) -> None:
-    teacher = classroom.open("camera/embed")
+    teacher = classroom.open_column("camera/embed")
     watcher = classroom.open_column(teacher.watch_link)
 
     def lit(learner: Learner, name: str) -> None:
@@ -164,7 +164,7 @@ def test_a_room_sees_what_its_teacher_points_at_and_a_watcher_points_for_themsel
     teacher.find("button", "Left cube, corner").hover()
     for learner in (teacher, watcher):
         lit(learner, "cube-left")
-    teacher.page.mouse.move(*teacher.place((0, 0, 0)))
+    teacher.page.mouse.move(0, 0)
     for learner in (teacher, watcher):
         lit(learner, "")
 

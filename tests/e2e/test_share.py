@@ -91,7 +91,7 @@ def test_a_lesson_is_shared_with_the_state_and_the_view_of_its_sim(classroom: Cl
 
 
 def test_the_example_for_developers_works_wherever_it_is_put(classroom: Classroom, course: CourseSite) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter(painted=False)
     page = learner.page
     page.goto(f"{learner.url}/developers")
     course.page = page.locator("#source").text_content() or ""
