@@ -91,6 +91,7 @@ def test_a_room_in_which_nobody_does_anything_is_put_away_and_comes_back() -> No
 @pytest.mark.e2e
 def test_a_page_that_was_put_away_waits_for_a_touch(page: Page) -> None:
     with Local(idle_minutes=1e-9) as local:
+        page.set_viewport_size({"width": 320, "height": 240})
         page.goto(f"{local.url}/sims/euler-angles/embed?yaw=33&controls=0")
         page.wait_for_function("window.sim3?.live")
         paused = page.get_by_role("heading", name="Paused")

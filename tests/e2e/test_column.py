@@ -312,21 +312,34 @@ def test_only_some_controls_are_there_when_a_link_says_so(column: Open) -> None:
     learner.until(lambda: "only=yaw,roll" in learner.address)
 
 
-CUT = "all => all.filter((one) => one.scrollWidth > one.clientWidth + 1).length"
-# Boxes that cut the longest number of six digits; units that stand beside no box.
-NARROW = """() => [...document.querySelectorAll("[data-box]")].filter((box) => {
+# How the column is laid out: by how much it is too wide, what is cut off (also of boxes with the longest number of six
+# digits), units that stand beside no box, what is too small to be hit; and where three things are.
+LAID = """() => {
+  const seen = (what) => [...document.querySelectorAll(what)].filter((node) => node.checkVisibility({ visibilityProperty: true }));
+  const place = (what) => document.querySelector(what).getBoundingClientRect().toJSON();
+  const texts = [".s3-formula", "[data-box]", ".s3-caption", "figcaption b", "figcaption span"];
+  const narrow = seen("[data-box]").filter((box) => {
     const { value } = box;
     box.value = "−0.176252";
-    const cut = box.checkVisibility() && !box.closest(".s3-vector") && box.scrollWidth > box.clientWidth;
+    const cut = !box.closest(".s3-vector") && box.scrollWidth > box.clientWidth;
     box.value = value;
     return cut;
-}).map((box) => box.dataset.box)"""
-STRAY = """() => [...document.querySelectorAll(".s3-vector > .s3-unit")].filter((unit) => {
+  });
+  const stray = seen(".s3-vector > .s3-unit").filter((unit) => {
     const boxes = unit.parentElement.querySelectorAll("input");
     const [beside, at] = [boxes[boxes.length - 1], unit].map((node) => node.getBoundingClientRect());
-    const apart = at.left < beside.right || at.left > beside.right + 20 || at.top < beside.top || at.bottom > beside.bottom;
-    return unit.checkVisibility() && apart;
-}).map((unit) => unit.parentElement.dataset.vector)"""
+    return at.left < beside.right || at.left > beside.right + 20 || at.top < beside.top || at.bottom > beside.bottom;
+  });
+  const { scrollWidth, clientWidth } = document.querySelector(".s3-column");
+  return {
+    column: scrollWidth - clientWidth,
+    cut: texts.filter((what) => seen(what).some((one) => one.scrollWidth > one.clientWidth + 1)),
+    narrow: narrow.map((box) => box.dataset.box),
+    stray: stray.map((unit) => unit.parentElement.dataset.vector),
+    small: (TARGETS)(),
+    scene: place(".s3-scene"), beside: place(".s3-column"), primary: place(".s3-primary"),
+  };
+}""".replace("TARGETS", TARGETS.replace("LEAST", "23.5"))
 SIZES: list[tuple[int, int]] = [(1280, 800), (700, 600), (560, 315), (390, 780), (320, 640), (640, 400)]
 
 
@@ -337,26 +350,31 @@ def test_everything_has_its_place_at_every_size(column: Open, slug: str) -> None
     folds = "open => document.querySelectorAll('details').forEach((fold) => (fold.open = open))"
     for width, height in SIZES:
         learner.page.set_viewport_size({"width": width, "height": height})
-        inner = frame.evaluate("[document.documentElement.scrollWidth, innerWidth]")
-        assert inner[0] <= inner[1], f"{width}×{height}: the page scrolls sideways"
+        over = frame.evaluate("document.documentElement.scrollWidth - innerWidth")
+        assert over <= 0, f"{width}×{height}: the page scrolls sideways by {over}"
         frame.evaluate(folds, True)
-        over = frame.evaluate("(c => c.scrollWidth - c.clientWidth)(document.querySelector('.s3-column'))")
-        assert over <= 0, f"{width}×{height}: the column scrolls sideways by {over}"
-        for what in (".s3-formula", "[data-box]", ".s3-caption", "figcaption b", "figcaption span"):
-            assert not frame.locator(f"{what}:visible").evaluate_all(CUT), f"{width}×{height}: {what} is cut off"
-        assert frame.evaluate(NARROW) == frame.evaluate(STRAY) == [], f"{width}×{height}"
-        primary = box(frame.locator(".s3-primary"))
-        assert primary["y"] + primary["height"] <= height, f"{width}×{height}: the first action is out of sight"
-        scene, column_ = box(frame.locator(".s3-scene")), box(frame.locator(".s3-column"))
+        laid = frame.evaluate(LAID)
+        assert laid["column"] <= 0, f"{width}×{height}: the column scrolls sideways"
+        assert [laid[what] for what in ("cut", "narrow", "stray", "small")] == [[], [], [], []], f"{width}×{height}"
+        primary, scene, column_ = laid["primary"], laid["scene"], laid["beside"]
+        assert primary["bottom"] <= height, f"{width}×{height}: the first action is out of sight"
         assert scene["width"] * scene["height"] > 0.25 * width * height, f"{width}×{height}: the scene is small"
-        assert scene["x"] + scene["width"] <= column_["x"] + 1 or scene["y"] + scene["height"] <= column_["y"] + 1
-        assert frame.evaluate(TARGETS.replace("LEAST", "23.5")) == [], f"{width}×{height}"
+        assert scene["right"] <= column_["x"] + 1 or scene["bottom"] <= column_["y"] + 1
     frame.evaluate(folds, False)
     learner.page.set_viewport_size({"width": 1280, "height": 800})
     tall = frame.locator(".s3-label:visible").evaluate_all(
         "all => all.filter((l) => l.clientHeight > 27).map((l) => l.innerText)"
     )
     assert tall == [], "labels that take two lines"
+
+
+def test_the_smallest_frame_shows_its_scene(column: Open) -> None:
+    for path in ("euler-angles/embed?controls=0", "triangulation/embed?controls=0", "euler-angles/embed"):
+        learner = column(path)
+        for width, height in ((640, 300), (400, 300), (320, 240), (160, 120)):
+            learner.page.set_viewport_size({"width": width, "height": height})
+            scene = box(learner.frame.locator(".s3-scene"))
+            assert scene["width"] * scene["height"] > 0.25 * width * height, f"{path} at {width}×{height}"
 
 
 def test_in_a_low_frame_two_pictures_follow_the_sentence_about_them(column: Open) -> None:

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from sims.euler_angles import SIM, EulerParams
 from sims.kit.readout import figure
+from tests.browser import COARSE
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import PATIENCE, VISERS_OWN_WORDS
 from tests.server import Server
@@ -42,7 +43,9 @@ def alone(browser: Browser, file: Path) -> Iterator[Page]:
         if not request.url.startswith(("data:", "blob:")) and request.url != file.as_uri():
             asked.append(request.url)
 
-    with browser.new_context(offline=True, viewport={"width": 880, "height": 600}) as context:
+    with browser.new_context(
+        offline=True, viewport={"width": 880, "height": 600}, device_scale_factor=COARSE
+    ) as context:
         context.on("request", note)
         context.on("weberror", lambda error: said.append(str(error.error)))
         context.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
