@@ -328,7 +328,8 @@ def test_axe_finds_what_is_wrong(used_page: Page) -> None:
     """
     grey = '<p style="color: #aaa">a pale text</p>'
     link = '<a href="/" style="color: #222; text-decoration: none">a link that is longer</a>'
-    bad = f'{grey * 2}<div style="background: #bbb">{grey}</div><p>among {link[:-13]}</a> more words than it has</p><img src="data:,">'
+    among = f"<p>among {link[:-13]}</a> more words than it has</p>"
+    bad = f'{grey * 2}<div style="background: #bbb">{grey}</div>{among}<img src="data:,">'
     used_page.set_content(
         f'<html lang="en"><title>Bad</title><main><h1>Bad</h1><p>good</p><p>{link}</p>{bad}</main></html>'
     )
