@@ -28,7 +28,10 @@ COALESCED = Counter(
     "sim3_coalesced", "Changes that were drawn together with a later one", ["sim"], registry=REGISTRY
 )  # fmt: skip
 FAILURES = Counter(
-    "sim3_failures", "Solves and drawings that raised what nobody has foreseen", ["sim", "what"], registry=REGISTRY
+    "sim3_failures",
+    "Solves, drawings and checks of challenges that raised what nobody has foreseen",
+    ["sim", "what"],
+    registry=REGISTRY,
 )  # fmt: skip
 UPLOADS = Counter("sim3_uploads", "Files of learners that were taken", registry=REGISTRY)
 

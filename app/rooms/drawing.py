@@ -63,7 +63,7 @@ class Drawing:
         self._latency = metrics.LATENCY.labels(sim.slug)
         self._solving = metrics.SOLVING.labels(sim.slug)
         self._coalesced = metrics.COALESCED.labels(sim.slug)
-        for what in ("solve", "draw"):  # at 0, or the first one would not be seen as an increase
+        for what in ("solve", "draw", "check"):  # at 0, or the first one would not be seen as an increase
             metrics.FAILURES.labels(sim.slug, what)
         self.words = ""
         """What a motion says, in place of the caption."""

@@ -7,6 +7,7 @@ and draws them.
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
@@ -34,6 +35,7 @@ from sims.kit.params import Params, by_hand
 from sims.kit.sim import Dial, Library, Sim, Step, jsonable
 from sims.kit.viewer import Viewer
 
+log = logging.getLogger("sim3")
 SOLVED_WITHIN = 20.0
 """Seconds that a page which wants the solution waits for that of the newest state."""
 
@@ -368,8 +370,17 @@ class Session:
         if not self._told or self._told[-1][0] != params:
             self._told = (*self._told[-1:], (params, solution))
             before = self._told[0] if len(self._told) > 1 else None
-            self._near = checked(self.sim.challenges, params, solution, before)
+            self._near = self._near_to(params, solution, before)
         return self._near
+
+    def _near_to(self, params: Params, solution: Any, before: tuple[Params, Any] | None) -> dict[str, Any]:
+        """The same of one state. A check that fails keeps no state from its pages."""
+        try:
+            return checked(self.sim.challenges, params, solution, before)
+        except Exception:
+            metrics.FAILURES.labels(self.sim.slug, "check").inc()
+            log.exception("checking the challenges of %s failed in the state %s", self.sim.slug, params.query())
+            return {}
 
     # ---- its tasks
 

@@ -92,7 +92,7 @@ export class Strip {
     const done = this.solved.has(id);
     this.title.textContent = title;
     this.goal.textContent = goal;
-    if (!done && found) this.near.textContent = found.words;
+    if (!done) this.near.textContent = found?.words ?? "";
     this.tick.toggleAttribute("data-solved", done || found?.solved === true);
     if (done || !found || this.said === id + found.words) return;
     this.said = id + found.words;

@@ -30,6 +30,7 @@ from app.rooms.solver import workers
 from app.routes.links import controls
 from app.sockets.commands import Commands
 from sims import by_slug
+from sims.kit.challenge import Challenge, Progress
 from sims.kit.fields import NumberBox, OptionalNumber, Slider, Vector
 from sims.kit.params import Params
 from sims.kit.progress import Superseded, begins, goes_on
@@ -687,6 +688,28 @@ def test_a_state_that_cannot_be_drawn_is_told_and_the_session_goes_on(caplog: py
     with caplog.at_level(logging.ERROR, "sim3"):
         run(test)
     assert "size=5" in caplog.text
+
+
+def test_a_challenge_whose_check_fails_keeps_no_state_from_its_pages(caplog: pytest.LogCaptureFixture) -> None:
+    def near(params: ToyParams, _: Any) -> Progress:
+        return Progress(1.0 / (params.size - 5.0), "nearer")
+
+    async def test() -> None:
+        challenge = Challenge(id="five", title="Five", goal="Not five.", near=near, solves={"size": 6}, misses=())
+        room = Room(sim=dataclasses.replace(toy()[0], challenges=(challenge,)))
+        room.session.change({"size": 6})
+        await room.drawn()
+        assert room.session.state()["challenges"]["five"]["solved"]
+        room.session.change({"size": 5})
+        await room.drawn()
+        for _ in range(2):
+            assert room.session.state()["params"]["size"] == 5
+            assert room.session.state()["challenges"] == {}
+
+    with caplog.at_level(logging.ERROR, "sim3"):
+        run(test)
+    (line,) = caplog.records
+    assert "size=5" in line.getMessage()
 
 
 @pytest.mark.parametrize("what", ["drag", "action", "motion", "late motion", "change"])
