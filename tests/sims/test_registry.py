@@ -75,10 +75,19 @@ def remembering(sim: AnySim) -> AnySim:
     return replace(sim, solve=lambda params, *_: solved(sim, params))
 
 
+class Rigs(dict[str, Rig]):
+    """A session by each sim's slug, begun when it is asked for."""
+
+    def __missing__(self, slug: str) -> Rig:
+        sim = by_slug(slug)
+        assert sim is not None
+        return self.setdefault(slug, Rig(remembering(sim)))
+
+
 @pytest.fixture(scope="module")
 def rigs() -> Iterator[dict[str, Rig]]:
     """A session of each sim with one browser, which the tests lead from state to state."""
-    made = {sim.slug: Rig(remembering(sim)) for sim in SIMS}
+    made = Rigs()
     yield made
     for rig in made.values():
         rig.close()
