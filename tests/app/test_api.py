@@ -101,7 +101,12 @@ def test_health(http: httpx.Client) -> None:
 # ---- solving
 
 
-@per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
+def thinned(sim: AnySim, params: Any) -> Any:
+    """A cloud has the same kinds of results with a twentieth of its points, in a tenth of the time."""
+    return params.changed({"voxel_size": 0.1}) if sim.heavy and params.voxel_size == 0.0 else params
+
+
+@per_sim(("sim", "name", "params"), [(sim, name, thinned(sim, params)) for sim, name, params in FEW], FEW_NAMES)
 def test_solve_answers_what_the_sim_solves_as_its_schema_says(
     http: httpx.Client, sim: AnySim, name: str, params: Any
 ) -> None:
