@@ -306,14 +306,14 @@ def differences(a: Mapping[str, Any], b: Mapping[str, Any], *, within: float = 0
 
 def _differences(where: str, a: Any, b: Any, within: float) -> Iterator[str]:
     if isinstance(a, Mapping) and isinstance(b, Mapping):
-        for key in sorted({*a, *b}, key=str):
+        for key in a if a.keys() == b.keys() else sorted({*a, *b}, key=str):
             if key not in a or key not in b:
                 yield f"{where}{key}: only in the {'first' if key in a else 'second'}"
             else:
                 yield from _differences(f"{where}{key}: ", a[key], b[key], within)
+    elif a is b or _same(a, b):
+        return
     elif isinstance(a, np.ndarray) or isinstance(b, np.ndarray) or _numbers(a, b):
-        if _same(a, b):
-            return
         p, q = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
         if p.shape != q.shape:
             yield f"{where}{p.shape} and {q.shape}"

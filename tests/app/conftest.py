@@ -14,6 +14,7 @@ import pytest
 import uvicorn
 
 from app.__main__ import config
+from app.lessons.shelf import Shelf
 from app.rooms import telling
 from app.routes.services import Services
 from app.settings import Settings
@@ -123,10 +124,12 @@ class _Recorder(logging.Handler):
 def local() -> Iterator[Local]:
     """One server for the tests of a module; at its end nothing may have gone wrong unseen.
 
-    It tells each state at once: most of a test's time would else be the wait between two.
+    It tells each state at once: most of a test's time would else be the wait between two. Where one lesson is read it
+    doesn't solve the states of all others, as the server of `server` does.
     """
     with pytest.MonkeyPatch.context() as patch, Local() as local:
         patch.setattr(telling, "STATE_INTERVAL", 0.0)
+        patch.setattr(Shelf, "loading", lambda _: [])
         yield local
 
 

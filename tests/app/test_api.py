@@ -27,6 +27,7 @@ from tests.sims.contract import contract_of
 
 AnySim = Sim[Any, Any]
 TRIANGULATION = next(sim for sim in SIMS if sim.slug == "triangulation")
+SCHEMAS = {sim.slug: solution_schema(api.solved(sim)) for sim in SIMS}
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 
 
@@ -52,8 +53,9 @@ def test_catalogue_lists_the_sims_in_order(http: httpx.Client) -> None:
 
 
 @each_sim
-def test_one_sim_with_objectives_and_schema(http: httpx.Client, sim: AnySim) -> None:
-    told = strict(http.get(f"/api/sims/{sim.slug}"))
+def test_one_sim_with_objectives_and_schema(client: httpx.Client, sim: AnySim) -> None:
+    """On the server that has loaded all lessons: their steps are told too, and states of the point cloud take long."""
+    told = strict(client.get(f"/api/sims/{sim.slug}"))
     assert {"slug", "title", "summary", "concepts", "objectives", "parameters"} <= told.keys()
     assert set(told["parameters"]["properties"]) == set(sim.params.model_fields)
     assert told["parameters"]["additionalProperties"] is False
@@ -99,14 +101,22 @@ def test_health(http: httpx.Client) -> None:
 # ---- solving
 
 
-@per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
-def test_solve_answers_what_the_sim_solves(http: httpx.Client, sim: AnySim, name: str, params: Any) -> None:
+def thinned(sim: AnySim, params: Any) -> Any:
+    """A cloud has the same kinds of results with a twentieth of its points, in a tenth of the time."""
+    return params.changed({"voxel_size": 0.1}) if sim.heavy and params.voxel_size == 0.0 else params
+
+
+@per_sim(("sim", "name", "params"), [(sim, name, thinned(sim, params)) for sim, name, params in FEW], FEW_NAMES)
+def test_solve_answers_what_the_sim_solves_as_its_schema_says(
+    http: httpx.Client, sim: AnySim, name: str, params: Any
+) -> None:
     sent = params.model_dump(mode="json")
     answer = http.post(f"/api/sims/{sim.slug}/solve", json=sent)
     assert answer.status_code == 200
     told = strict(answer)
     assert told["params"] == sent
     assert told["solution"] == jsonable(sim.solve(params))
+    assert not list(wrong(told["solution"], SCHEMAS[sim.slug]))
 
 
 @each_sim
@@ -354,23 +364,23 @@ def test_what_fails_on_the_server_is_said_too(local: Local, monkeypatch: pytest.
 # ---- what a solution is
 
 
-@per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
-def test_a_solution_is_what_its_schema_says(sim: AnySim, name: str, params: Any) -> None:
-    schema = solution_schema(api.solved(sim))
-    assert not list(wrong(jsonable(sim.solve(params)), schema))
+@pytest.fixture(scope="module")
+def openapi(client: httpx.Client) -> Any:
+    """The description of the whole API."""
+    return strict(client.get("/openapi.json"))
 
 
 @each_sim
-def test_the_schema_is_told_and_says_what_is_what(http: httpx.Client, sim: AnySim) -> None:
-    schema = strict(http.get(f"/api/sims/{sim.slug}"))["solution"]
-    path = strict(http.get("/openapi.json"))["paths"][f"/api/sims/{sim.slug}/solve"]["post"]
+def test_the_schema_is_told_and_says_what_is_what(client: httpx.Client, openapi: Any, sim: AnySim) -> None:
+    schema = strict(client.get(f"/api/sims/{sim.slug}"))["solution"]
+    path = openapi["paths"][f"/api/sims/{sim.slug}/solve"]["post"]
     answer = path["responses"]["200"]["content"]["application/json"]["schema"]
     assert answer["properties"]["solution"] == schema
     assert set(path["requestBody"]["content"]["application/json"]["schema"]["properties"]) == set(
         sim.params.model_fields
     )
     assert schema["description"]
-    told = strict(http.post(f"/api/sims/{sim.slug}/solve"))
+    told = strict(client.post(f"/api/sims/{sim.slug}/solve"))
     assert not list(wrong(told["solution"], schema))
     for name in schema["required"]:
         rest = {key: value for key, value in told["solution"].items() if key != name}
@@ -381,11 +391,12 @@ def test_the_schema_is_told_and_says_what_is_what(http: httpx.Client, sim: AnySi
 # ---- bad parameters in a link
 
 
-@pytest.mark.parametrize("path", ["", "/embed"], ids=["page", "embed"])
 @per_sim(("sim", "name", "text"), LINK, LINK_NAMES)
 def test_bad_link_names_the_parameter_the_value_and_what_is_allowed(
-    http: httpx.Client, sim: AnySim, name: str, text: str, path: str
+    http: httpx.Client, sim: AnySim, name: str, text: str
 ) -> None:
+    """On the page and in its frame in turn: the words are the same, and each parameter has several that are bad."""
+    path = "/embed" if LINK.index((sim, name, text)) % 2 else ""
     answer = http.get(f"/sims/{sim.slug}{path}", params={name: text})
     assert answer.status_code == 422
     assert answer.headers["content-type"].startswith("text/html")

@@ -584,38 +584,44 @@ def test_pages_that_went_leave_nothing_behind(local: Local, learner: Page) -> No
 # ---- the server as a process of its own
 
 
-def test_memory_stays_flat_and_the_log_stays_clean() -> None:
-    """Opens, closes and abuse; what the server prints is checked when it ends."""
-    with Server() as server, Page(server.url) as learner:
+@pytest.fixture(scope="module")
+def process() -> Iterator[Server]:
+    """What it prints is checked when it ends."""
+    with Server() as server:
+        yield server
+
+
+def test_memory_stays_flat(process: Server) -> None:
+    """While pages open, misuse it and close."""
+    with Page(process.url) as learner:
         chance = random.Random(9)
 
         def abuse(rounds: int) -> float:
             for _ in range(rounds):
-                with Page(server.url) as page:
+                with Page(process.url) as page:
                     page.slide("yaw", float(chance.randrange(90)))
                     page.viser.send(chance.randbytes(chance.randrange(1, 5000)))
                     page.tell({"type": "set", "params": {"yaw": "x" * chance.randrange(5000)}})
                     page.enter("order", "17")
                     page.settle()
             learner.works()
-            return server.memory()
+            return process.memory()
 
         warm = abuse(15)
         assert abuse(30) - warm < 8.0, "megabytes"
         learner.works()
 
 
-def test_a_killed_server_goes_on_where_the_page_was() -> None:
-    with Server() as server:
-        page = Page(server.url, "yaw=12&order=xyz")
-        page.slide("yaw", 77.0)
-        page.until(lambda: page.params["yaw"] == 77.0, "the state to follow")
-        query = page.states[-1]["query"]
-        server.restart(hard=True)
-        page.close()
-        with Page(server.url, room=page.room) as watcher:
-            again = Page(server.url, query, key=page.key)
-            watcher.until(lambda: watcher.params == again.params, "the watcher to follow")
-            assert again.params == page.params
-            again.works()
-            again.close()
+def test_a_killed_server_goes_on_where_the_page_was(process: Server) -> None:
+    page = Page(process.url, "yaw=12&order=xyz")
+    page.slide("yaw", 77.0)
+    page.until(lambda: page.params["yaw"] == 77.0, "the state to follow")
+    query = page.states[-1]["query"]
+    process.restart(hard=True)
+    page.close()
+    with Page(process.url, room=page.room) as watcher:
+        again = Page(process.url, query, key=page.key)
+        watcher.until(lambda: watcher.params == again.params, "the watcher to follow")
+        assert again.params == page.params
+        again.works()
+        again.close()

@@ -14,12 +14,12 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from app.rooms.keys import new_key, room_of
+from tests.app.conftest import PREFIX
 from tests.app.page import SLUG, connect
 from tests.proxies import find
 from tests.replicas import interpolated
 from tests.server import PATIENCE, ROOT, Server, free_port, wait_for
 
-PREFIX = "/sim3"
 README = (ROOT / "README.md").read_text()
 
 
@@ -28,7 +28,7 @@ def snippet(language: str) -> str:
     found = re.findall(rf"^```{language}\n(.*?)^```$", README, re.S | re.M)
     assert len(found) == 1, f"one snippet for {language}"
     text: str = found[0]
-    return text
+    return changed(text, {"/sim3": PREFIX})
 
 
 def changed(text: str, changes: Mapping[str, str]) -> str:
@@ -67,7 +67,7 @@ def haproxy(backend: int, ports: Mapping[str, int]) -> str:
     bind = re.search(r"bind .*", told)
     assert bind
     told = changed(told, {bind[0]: "bind 127.0.0.1:PORT", "X-Forwarded-Proto https": "X-Forwarded-Proto http"})
-    strip = "    http-request replace-path /sim3(/.*) \\1\n"
+    strip = f"    http-request replace-path {PREFIX}(/.*) \\1\n"
     ways = {"handed on": told, "taken away": changed(told, {"backend sim3\n": f"backend sim3\n{strip}"})}
     parts = [
         re.sub(r"\b(frontend |backend )(\w+)", rf"\g<1>\g<2>{k}", text).replace("PORT", str(ports[way]))
@@ -77,12 +77,6 @@ def haproxy(backend: int, ports: Mapping[str, int]) -> str:
     return f"global\n    maxconn 100\n\ndefaults\n{timeouts}\n" + "\n".join(
         re.sub(r"use_backend sim3\b", f"use_backend sim3{k}", part) for k, part in enumerate(parts)
     )
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[Server]:
-    with Server(SIM3_ROOT_PATH=PREFIX) as server:
-        yield server
 
 
 @pytest.fixture(scope="module")

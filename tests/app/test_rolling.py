@@ -26,7 +26,7 @@ LEARNERS = 6
 def replicas(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Replicas]:
     if not find("haproxy"):
         pytest.skip("HAProxy is not installed")
-    with Replicas(tmp_path_factory.mktemp("balancer"), 3, SIM3_MAX_SESSIONS_PER_ADDRESS=f"{LEARNERS}") as replicas:
+    with Replicas(tmp_path_factory.mktemp("balancer"), 2, SIM3_MAX_SESSIONS_PER_ADDRESS=f"{LEARNERS}") as replicas:
         yield replicas
 
 
@@ -96,7 +96,7 @@ def test_a_class_behind_a_balancer_outlives_the_restart_of_its_process(replicas:
         teacher.tell({"type": "show", "params": {"yaw": 70}})
         teacher.tell({"type": "look", "eyes": True})
         animals = work(teacher, learners)
-        assert sorted(classes(replicas)) == [0, 0, 1], "all met in one process"
+        assert sorted(classes(replicas)) == [0, 1], "all met in one process"
 
         replicas.servers[classes(replicas).index(1)].restart(hard=False)
         for each in (teacher, *learners):
@@ -109,7 +109,7 @@ def test_a_class_behind_a_balancer_outlives_the_restart_of_its_process(replicas:
         assert teacher.welcome["ends"] == known["ends"]
         assert all(each.welcome["eyes"] and each.welcome["params"]["yaw"] == 70 for each in learners)
         assert work(teacher, learners) == animals
-        assert sorted(classes(replicas)) == [0, 0, 1]
+        assert sorted(classes(replicas)) == [0, 1]
 
 
 def test_each_address_has_its_places_behind_the_balancer_too(replicas: Replicas) -> None:
@@ -122,7 +122,8 @@ def test_each_address_has_its_places_behind_the_balancer_too(replicas: Replicas)
     before = replicas.rooms()
 
     def taken() -> bool:
-        ask("192.0.2.1")
+        for _ in range(LEARNERS):
+            ask("192.0.2.1")
         return all(now == then + LEARNERS for now, then in zip(replicas.rooms(), before, strict=True))
 
     wait_for(taken, "all places of an address to be taken, on each server")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
@@ -50,6 +50,7 @@ def test_full_cells_that_nearly_touch(gap: float, expected: int) -> None:
     assert len(found.sizes) == expected
 
 
+@settings(max_examples=12)
 @given(st.integers(0, 2**32 - 1))
 def test_full_cells_among_each_other(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -24,10 +24,15 @@ each_challenge = pytest.mark.parametrize(
 )
 
 
+SOLUTIONS: dict[Params, Any] = {}
+
+
 def solved(sim: AnySim, params: Params) -> tuple[Params, Any]:
-    """A state with its solution."""
-    library = () if sim.files is None else (sim.files.library(None, 1),)
-    return params, sim.solve(params, *library)
+    """A state with its solution, which is found once: the challenges of a sim are asked of the same states."""
+    if params not in SOLUTIONS:
+        library = () if sim.files is None else (sim.files.library(None, 1),)
+        SOLUTIONS[params] = sim.solve(params, *library)
+    return params, SOLUTIONS[params]
 
 
 def opening(sim: AnySim) -> Params:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -60,6 +60,7 @@ def test_each_form_that_programs_write_is_recognised(rotation: Rotation) -> None
     assert_means(f"Quaternion.AngleAxis({degrees!r}f, new Vector3({row(axis)}))", rotation, "Unity")
 
 
+@settings(max_examples=12)  # of each of the 24 conventions
 @given(st.tuples(*[st.floats(-179.0, 179.0)] * 3))
 def test_euler_angles_keep_their_convention(angles: tuple[float, float, float]) -> None:
     a, b, c = angles

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -25,7 +26,7 @@ from sims.kit.scene.view import FIELD
 from sims.kit.sim import Sim, jsonable
 from tests.frames import SceneModel, differences
 from tests.per_sim import per_sim
-from tests.server import Rig
+from tests.server import Browser, Rig
 from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
 from tests.sims.contract import contract_of
 from tests.sims.markup import bad_attributes, bad_numbers, mistakes, without_code, words, xml
@@ -38,27 +39,59 @@ NUMERIC = {slug: model.numeric for slug, model in MODELS.items()}
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 each_state = per_sim(("sim", "name", "params"), ALL, NAMES)
 TYPED = [case for case in ALL if case[0].typed or case[0].dials]
+
+
 few_states = per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
+
+
+def few_of(sim: AnySim) -> list[Params]:
+    """The states of a sim that aren't bounds."""
+    return [params for each, _, params in FEW if each is sim]
+
+
+SOLUTIONS: dict[Params, Any] = {}
+
+
+def solved(sim: AnySim, params: Params) -> Any:
+    """The solution of a state, which is found once for all tests of a process."""
+    if params not in SOLUTIONS:
+        SOLUTIONS[params] = sim.solve(params)
+    return SOLUTIONS[params]
+
+
+COLUMNS: dict[Params, tuple[dict[str, str], dict[str, Any], str]] = {}
+
+
+def column_of(sim: AnySim, params: Params) -> tuple[dict[str, str], dict[str, Any], str]:
+    """Parts, what inputs show, and markup of a column made for a state alone, once for all tests of a process."""
+    if params not in COLUMNS:
+        fresh, solution = Column(sim), solved(sim, params)
+        COLUMNS[params] = *fresh.of(params, solution), fresh.html(params, solution)
+    return COLUMNS[params]
+
+
+def remembering(sim: AnySim) -> AnySim:
+    """The sim, which solves no state twice: that a state has one solution is a test of its own."""
+    return replace(sim, solve=lambda params, *_: solved(sim, params))
+
+
+class Rigs(dict[str, Rig]):
+    """A session by each sim's slug, begun when it is asked for."""
+
+    def __missing__(self, slug: str) -> Rig:
+        sim = by_slug(slug)
+        assert sim is not None
+        return self.setdefault(slug, Rig(remembering(sim)))
 
 
 @pytest.fixture(scope="module")
 def rigs() -> Iterator[dict[str, Rig]]:
     """A session of each sim with one browser, which the tests lead from state to state."""
-    made = {sim.slug: Rig(sim) for sim in SIMS}
+    made = Rigs()
     yield made
     for rig in made.values():
         rig.close()
         assert not rig.problems()
-
-
-SOLUTIONS: dict[tuple[str, str], Any] = {}
-
-
-def solved(sim: AnySim, name: str, params: Params) -> Any:
-    """The solution of the state of that name, which is found once for all tests of a process."""
-    if (sim.slug, name) not in SOLUTIONS:
-        SOLUTIONS[sim.slug, name] = sim.solve(params)
-    return SOLUTIONS[sim.slug, name]
 
 
 def parse(sim: AnySim, query: str) -> Params:
@@ -134,7 +167,7 @@ def test_slug_finds_the_sim(sim: AnySim) -> None:
 
 @each_state
 def test_solution_is_finite_json_with_the_fields_of_the_contract(sim: AnySim, name: str, params: Params) -> None:
-    solution = jsonable(solved(sim, name, params))
+    solution = jsonable(solved(sim, params))
     assert set(contract_of(sim).solution.split()) <= set(solution)
     text = json.dumps(solution, allow_nan=False)
     assert "-0.0," not in text, "a negative zero goes out"
@@ -142,12 +175,12 @@ def test_solution_is_finite_json_with_the_fields_of_the_contract(sim: AnySim, na
 
 @each_state
 def test_solving_is_a_function_of_the_parameters(sim: AnySim, name: str, params: Params) -> None:
-    assert jsonable(sim.solve(params.model_copy())) == jsonable(solved(sim, name, params))
+    assert jsonable(sim.solve(params.model_copy())) == jsonable(solved(sim, params))
 
 
 @each_state
 def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params: Params) -> None:
-    html = readout.render(sim.readouts(params, solved(sim, name, params)))
+    html = readout.render(sim.readouts(params, solved(sim, params)))
     assert not bad_numbers(words(without_code(html)))
     assert not bad_attributes(html)
     assert not mistakes(html)
@@ -155,7 +188,7 @@ def test_numbers_beside_the_scene_are_for_people(sim: AnySim, name: str, params:
 
 @each_state
 def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> None:
-    solution = solved(sim, name, params)
+    solution = solved(sim, params)
     shown = sim.panes(params, solution) if sim.panes else ()
     assert len({p.name for p in shown}) == len(shown)
     html = "".join(pane.content(p) for p in shown)
@@ -168,7 +201,7 @@ def test_pictures_are_well_formed(sim: AnySim, name: str, params: Params) -> Non
 
 @each_state
 def test_a_sentence_describes_the_state(sim: AnySim, name: str, params: Params) -> None:
-    sentence = sim.describe(params, solved(sim, name, params))
+    sentence = sim.describe(params, solved(sim, params))
     assert sentence.endswith(".")
     assert sentence[0].isupper() or sentence[0].isdigit()
     assert "  " not in sentence
@@ -188,18 +221,16 @@ def test_every_state_draws(rigs: dict[str, Rig], sim: AnySim, name: str, params:
     assert rig.session.params == params
     assert not rig.problems()
     assert rig.column.version == model.version == rig.session.version
-    solution = solved(sim, name, params)
-    fresh = Column(sim)
-    parts, own = fresh.of(params, solution)
+    parts, own, _ = column_of(sim, params)
     assert rig.column.parts == parts
     assert {each: rig.column.values[each] for each in own} == own
     named = [text for text in model.labels().values() if len(text.strip("′'")) > 1]
     assert len(named) <= MOST_LABELS, named
     assert not [bad for text in named for bad in bad_numbers(text)]
-    for node in filter(model.visible, model.names):
-        assert np.isfinite(model.world_pose(node)).all(), node
-        if {"points", "vertices"} & model.node(node).props.keys():
-            assert np.isfinite(model.points(node)).all(), node
+    for node in map(model.node, filter(model.visible, model.names)):  # those that it is nested in are visible too
+        assert np.isfinite(node.pose).all(), node.name
+        for prop in {"points", "vertices", "scale"} & node.props.keys():
+            assert np.isfinite(node.props[prop]).all(), (node.name, prop)
 
 
 LETTER, EDGE, LINE = 7.3, 7.0, 19.0
@@ -241,36 +272,35 @@ def box(model: SceneModel, name: str, text: str, eye: Array, middle: Array, size
     return [float(each) for each in (x, y, x + wide, y + high)]
 
 
-@few_states
-def test_scene_depends_on_the_state_alone(rigs: dict[str, Rig], sim: AnySim, name: str, params: Params) -> None:
-    """A browser that saw all the states before shows what one that has just come shows."""
-    rig = rigs[sim.slug]
-    rig.show(params)
-    fresh = rig.join()
-    rig.browsers.remove(fresh)
-    fresh.leave()
-    assert not differences(rig.browser.snapshot(), fresh.snapshot(), within=1e-12)
-
-
 @each_sim
-def test_going_away_and_back_restores_the_scene(rigs: dict[str, Rig], sim: AnySim) -> None:
-    rig = rigs[sim.slug]
-    rig.show(sim.params())
-    before = rig.model.snapshot()
-    before = {**before, **{k: {**v, "props": dict(v["props"])} for k, v in before.items()}}
-    for _, params in [(n, p) for s, n, p in FEW if s is sim]:
-        rig.show(params)
-        rig.show(sim.params())
-        assert not differences(before, rig.model.snapshot(), within=1e-12)
+def test_scene_depends_on_the_state_alone(sim: AnySim) -> None:
+    """Who saw other states before shows what was shown with others before these, and what one shows who has just come.
 
-
-@each_sim
-def test_everybody_in_a_room_sees_the_same(sim: AnySim) -> None:
-    with Rig(sim) as rig:
-        second = rig.join()
-        for _, params in [(n, p) for s, n, p in FEW if s is sim][::3]:
+    One walk leads from each state to the next, another through them from the last, and back to the defaults after each.
+    """
+    start, few = sim.params(), few_of(sim)
+    with Rig(remembering(sim)) as rig:
+        seen = []
+        for params in few:
             rig.show(params)
-            assert not differences(rig.browser.snapshot(), second.snapshot(), within=0.0)
+            seen.append(kept(rig.browser))
+        for k, params in reversed([*enumerate(few)]):
+            rig.show(params)
+            assert not differences(seen[k], rig.browser.snapshot(), within=1e-12)
+            latest = rig.join() if k % 3 == 0 else None
+            if latest is not None:
+                assert not differences(seen[k], latest.snapshot(), within=1e-12)
+            rig.show(start)
+            assert not differences(seen[0], rig.browser.snapshot(), within=1e-12)
+            if latest is not None:
+                assert not differences(rig.browser.snapshot(), latest.snapshot(), within=0.0)
+                rig.browsers.remove(latest)
+                latest.leave()
+
+
+def kept(browser: Browser) -> dict[str, Any]:
+    """What a browser shows now, which stays as it is when the browser is shown something else."""
+    return {k: {**v, "props": dict(v["props"])} if isinstance(v, dict) else v for k, v in browser.snapshot().items()}
 
 
 @each_sim
@@ -288,16 +318,17 @@ def test_the_dark_theme_changes_looks_alone(sim: AnySim) -> None:
 @each_state
 def test_the_column_is_whole(sim: AnySim, name: str, params: Params) -> None:
     """Every part that a state has is on the page that begins with it, and the markup is sound."""
-    column, solution = Column(sim), solved(sim, name, params)
-    html = column.html(params, solution)
+    parts, _, html = column_of(sim, params)
     assert not [bad for bad in bad_attributes(html) if not bad.startswith(("option", "button"))]  # which say "none"
     page = xml(html)
     places = [e.get("data-part") for e in page.iter() if e.get("data-part")]
     assert len(set(places)) == len(places)
-    assert {*column.of(params, solution).parts} <= {*places}
+    assert {*parts} <= {*places}
     idents = [e.get("id") for e in page.iter() if e.get("id")]
     assert len(set(idents)) == len(idents)
-    assert {*readout.folded(sim.readouts(params, solution))} <= {"", *sim.folds}, "a fold that isn't declared"
+    assert {*readout.folded(sim.readouts(params, solved(sim, params)))} <= {"", *sim.folds}, (
+        "a fold that isn't declared"
+    )
 
 
 @each_state
@@ -316,7 +347,7 @@ def test_controls_are_arranged_without_loss(sim: AnySim, name: str, params: Para
 
 @each_state
 def test_a_caption_is_one_short_thought(sim: AnySim, name: str, params: Params) -> None:
-    caption = sim.caption(params, solved(sim, name, params))
+    caption = sim.caption(params, solved(sim, params))
     assert caption.endswith(".")
     assert caption[0].isupper() or caption.startswith("q ")
     assert len(caption) <= 120
@@ -351,22 +382,29 @@ def test_only_some_controls_can_be_asked_for(sim: AnySim) -> None:
     assert {e.get("data-act") for e in page.iter("button") if e.get("data-act")} == {"reset"}
 
 
+TINY = (5e-324, 1e-200, 1e-155)
+"""The least number there is, one whose square is zero, and one whose square has lost most of its digits."""
+
+
 @each_sim
-@pytest.mark.parametrize("tiny", [5e-324, 1e-200, 1e-155])
-def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim, tiny: float) -> None:
-    for base in ({}, *(() if sim.heavy else sim.states.values())):
+def test_numbers_that_are_almost_zero_are_no_trouble(sim: AnySim) -> None:
+    """Each number of the defaults is each of three; in the named states one of them, another in the next state."""
+    for k, base in enumerate(({}, *(() if sim.heavy else sim.states.values()))):
         start = sim.params().changed(base)
-        for name in NUMERIC[sim.slug]:
-            value = getattr(start, name)
-            spoiled: list[Any] = [tiny] if isinstance(value, float) else []
-            if isinstance(value, tuple):
-                spoiled = [(*value[:k], tiny, *value[k + 1 :]) for k in range(len(value))]
-            for one in spoiled:
+        for j, name in enumerate(NUMERIC[sim.slug]):
+            for one in spoiled(getattr(start, name), [TINY[(j + k) % 3]] if base else TINY):
                 with suppress(ValidationError, GeometryError):  # refused in words
                     params = start.changed({name: one})
                     solution = sim.solve(params)
                     assert readout.render(sim.readouts(params, solution))
                     assert sim.panes is None or sim.panes(params, solution) is not None
+
+
+def spoiled(value: Any, tiny: Sequence[float]) -> list[Any]:
+    """What is given instead of a number, and of each entry of several in turn; whole numbers are left as they are."""
+    if isinstance(value, tuple):
+        return [(*value[:k], one, *value[k + 1 :]) for one in tiny for k in range(len(value))]
+    return [*tiny] if isinstance(value, float) else []
 
 
 # ---- what hands do
@@ -475,20 +513,29 @@ def test_a_slider_stops_at_its_end_and_a_box_refuses_what_is_beyond(
             rig.browser.told.clear()
 
 
-@each_sim
-def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnySim) -> None:
+@few_states
+def test_every_control_stands_where_the_state_is(rigs: dict[str, Rig], sim: AnySim, name: str, params: Params) -> None:
     rig = rigs[sim.slug]
-    for _, params in [(n, p) for s, n, p in FEW if s is sim]:
-        rig.show(params)
-        for name in [n for s, n in field_cases() if s is sim]:
-            if isinstance(params.kinds[name], Opened):  # what it doesn't say may follow from the others
-                continue
-            wanted = shown(params, name)
-            assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None), name
-            if isinstance(params.kinds[name], Slider):
-                control = next(xml(rig.column.parts[f"control:{name}"]).iter("input"))
-                bounds = sim.offers(params, rig.session.solution).bounds(name)
-                assert (float(control.get("min", "")), float(control.get("max", ""))) == bounds
+    rig.show(params)
+    for name in [n for s, n in field_cases() if s is sim]:
+        if isinstance(params.kinds[name], Opened):  # what it doesn't say may follow from the others
+            continue
+        wanted = shown(params, name)
+        assert inputs(rig, name) == (pytest.approx(wanted) if wanted is not None else None), name
+        if isinstance(params.kinds[name], Slider):
+            control = next(xml(rig.column.parts[f"control:{name}"]).iter("input"))
+            bounds = sim.offers(params, rig.session.solution).bounds(name)
+            assert (float(control.get("min", "")), float(control.get("max", ""))) == bounds
+    for name in [n for s, n in entry_cases() if s is sim]:
+        controls = xml(rig.column.parts[f"control:{name}"]).iter()
+        entries = sim.offers(params).entries(name)
+        assert [each for e in controls if (each := e.get("data-control"))] == [
+            f"{name}.{k}" for k, entry in enumerate(entries) if entry is not None
+        ]
+        value = getattr(params, name)
+        for k, (entry, one) in enumerate(zip(entries, value, strict=bool(value))):
+            assert entry in (None, one)
+            assert rig.column.values.get(f"{name}.{k}") == entry
 
 
 @each_list
@@ -497,17 +544,9 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
     kind = sim.params.kinds[name]
     assert isinstance(kind, LISTS)
     letters = list(kind.labels) if isinstance(kind, Letters) else None
-    for params in [p for s, _, p in FEW if s is sim]:
-        rig.show(params)
-        start = getattr(params, name)
-        shown = [
-            e.get("data-control") for e in xml(rig.column.parts[f"control:{name}"]).iter() if e.get("data-control")
-        ]
-        entries = sim.offers(params).entries(name)
-        assert shown == [f"{name}.{k}" for k, entry in enumerate(entries) if entry is not None]
-        for k, (entry, value) in enumerate(zip(entries, start, strict=bool(start))):
-            assert entry in (None, value)
-            assert rig.column.values.get(f"{name}.{k}") == entry
+    params = few_of(sim)[-1]
+    rig.show(params)
+    start = getattr(params, name)
     if not start:
         return
     last = len(start) - 1
@@ -524,9 +563,10 @@ def test_each_entry_of_a_list_has_a_control_that_sets_it_alone(rigs: dict[str, R
 
 @each_sim
 def test_every_action_ends_in_a_state(sim: AnySim) -> None:
-    for action in sim.actions:
-        with Rig(sim) as rig:
-            rig.session.motion.reduced = True
+    with Rig(sim) as rig:
+        rig.session.motion.reduced = True
+        for action in sim.actions:
+            rig.show(sim.params())
             result = action.run(sim.params())
             changes = [result] if hasattr(result, "keys") else [step.changes for step in result]
             assert changes
@@ -540,14 +580,15 @@ def test_every_action_ends_in_a_state(sim: AnySim) -> None:
 
 @each_sim
 def test_reset_returns_to_the_first_state(sim: AnySim) -> None:
-    for _, params in [(n, p) for s, n, p in FEW if s is sim][:3]:
-        with Rig(sim, params) as rig:
-            before = rig.model.snapshot()
-            rig.show(sim.params().changed(next(iter(sim.states.values()))))
-            rig.browser.press("reset")
-            rig.settle()
-            assert rig.session.params == params
-            assert not differences(before, rig.model.snapshot(), within=1e-12)
+    """To the state in which the session began, which isn't that of the defaults."""
+    _, other, params, *_ = few_of(sim)
+    with Rig(sim, params) as rig:
+        before = kept(rig.browser)
+        rig.show(other)
+        rig.browser.press("reset")
+        rig.settle()
+        assert rig.session.params == params
+        assert not differences(before, rig.browser.snapshot(), within=1e-12)
 
 
 @each_sim

@@ -30,18 +30,21 @@ def camera(place: tuple[float, float, float], target: tuple[float, float, float]
     return Camera.from_intrinsics(500.0, 500.0, 320.0, 240.0, T_camera_world=T)
 
 
-def first_met(origin: Array, direction: Array) -> tuple[float, int]:
-    """Distance and number of the face that a ray meets first, of those turned to it: each as a fan of triangles."""
-    best = (np.inf, -1)
-    for number, face in enumerate(PAINTER.faces):
-        a = face[0]
-        if np.cross(face[1] - a, face[2] - a) @ direction >= 0.0:
-            continue
-        for b, c in pairwise(face[1:]):
-            u, v, t = np.linalg.solve(np.column_stack([b - a, c - a, -direction]), origin - a)
-            if min(u, v, 1.0 - u - v, t) >= 0.0 and t < best[0]:
-                best = float(t), number
-    return best
+FAN = [(number, face[0], b, c) for number, face in enumerate(PAINTER.faces) for b, c in pairwise(face[1:])]
+NUMBER, A, B, C = (np.array(each) for each in zip(*FAN, strict=True))
+"""The faces as fans of triangles: the face of each, and its corners."""
+OUTWARDS = np.array([np.cross(face[1] - face[0], face[2] - face[0]) for face in PAINTER.faces])[NUMBER]
+
+
+def first_met(origin: Array, direction: Array) -> int:
+    """Number of the face that a ray meets first, of those turned to it; -1 if it meets none."""
+    turned = OUTWARDS @ direction < 0.0
+    a, b, c = A[turned], B[turned], C[turned]
+    along = np.broadcast_to(-direction, a.shape)
+    u, v, t = np.linalg.solve(np.stack([b - a, c - a, along], axis=2), (origin - a)[..., None])[..., 0].T
+    met = np.where(np.minimum.reduce([u, v, 1.0 - u - v, t]) >= 0.0, t, np.inf)
+    nearest = int(np.argmin(met))
+    return int(NUMBER[turned][nearest]) if np.isfinite(met[nearest]) else -1
 
 
 @pytest.mark.parametrize("place", FROM)
@@ -52,7 +55,7 @@ def test_what_is_painted_last_is_what_the_ray_meets_first(place: tuple[float, fl
     painted = PAINTER.paint(seen.P, planes(seen))
     pixels = np.random.default_rng(5).uniform((0, 0), (639, 479), (60, 2))
     faces = topmost(painted, pixels)
-    met = [first_met(origin, direction)[1] for origin, direction in zip(*rays(seen, pixels), strict=True)]
+    met = [first_met(origin, direction) for origin, direction in zip(*rays(seen, pixels), strict=True)]
     assert faces == [face if face == UNSURE else other for face, other in zip(faces, met, strict=True)]
     assert faces.count(UNSURE) < 5
 
