@@ -46,6 +46,8 @@ COURSE = "course.localhost"
 """Another site on this machine, whose pages have sims in frames."""
 THUMB = 16.0
 """Pixels that a slider's thumb takes of its track."""
+STEPS = 4
+"""Places on the way of a pulling hand; a painted scene draws a frame for each."""
 # What viser's client makes the browser say: at each start, at each drag in the scene, and, without a GPU, where there
 # are nodes to click.
 VISERS_OWN_WORDS = (
@@ -378,7 +380,7 @@ class Learner:
         mouse = self.page.mouse
         mouse.move(at(now), y)
         mouse.down()
-        mouse.move(at(value), y, steps=6)
+        mouse.move(at(value), y, steps=STEPS)
         mouse.up()
 
     def pull(self, start: tuple[float, float], dx: float, dy: float, *, key: str = "") -> None:
@@ -389,7 +391,7 @@ class Learner:
         if key:
             keyboard.down(key)
         mouse.down()
-        mouse.move(x + dx, y + dy, steps=8)
+        mouse.move(x + dx, y + dy, steps=STEPS)
         mouse.up()
         if key:
             keyboard.up(key)

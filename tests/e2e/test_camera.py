@@ -13,6 +13,7 @@ from sims.camera.solution import LIFT
 from sims.kit.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
+from tests.e2e.test_phone import touch
 
 Array = npt.NDArray[np.float64]
 MARKS = """() => Object.fromEntries([...document.querySelectorAll("svg [data-link]")].map(
@@ -65,8 +66,8 @@ def test_controls_of_the_camera_answer_and_a_reload_brings_all_back(classroom: C
     assert agree(learner, fx=600, fy=300, tilt=-2, projection="weak") == before
 
 
-def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed")
+def test_a_point_lights_up_and_is_selected_in_table_and_picture(classroom: Classroom) -> None:
+    learner = classroom.open_column("camera/embed")
     frame = learner.frame
     agree(learner, selected="roof-near")
     button = learner.find("button", "Left cube, corner")
@@ -85,32 +86,8 @@ def test_a_point_lights_up_and_is_selected_in_table_picture_and_scene(classroom:
 
     frame.locator('svg [data-link="roof-far"] .s3-spot').click()
     agree(learner, selected="roof-far")
-    learner.click_on("/points/far-post")
-    agree(learner, selected="far-post")
-    learner.until(lambda: learner.pressed("far-post"))
-
-
-def test_grips_move_and_turn_the_camera_in_the_scene(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed")
-    agree(learner, pan=0)
-    x, y = learner.place_of("/eye")
-    learner.pull((x, y), -20, -16)
-    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/eye"), [x - 20, y - 16], atol=3))
-    solution = agree(learner, pan=0, tilt=0)
-    assert np.linalg.norm(np.subtract(solution["center"], [0, -4, 1.2])) > 0.1
-    np.testing.assert_allclose(
-        learner.scene.world_pose("/eye")[:3, 3] - (0, 0, LIFT), solution["center"], rtol=0, atol=1e-6
-    )
-    center = solution["center"]
-    x, y = learner.place_of("/look")
-    learner.pull((x, y), -25, -10)
-    learner.until(lambda: learner.params["pan"] != 0)
-    solution = agree(learner, position=center, roll=0)
-    assert learner.params["pan"] > 0.0
-    grip = learner.scene.world_pose("/look")[:3, 3] - center
-    np.testing.assert_allclose(grip / np.linalg.norm(grip), solution["R"][2], rtol=0, atol=1e-9)
-
-    handle = learner.frame.locator("[data-handle=principal]")
+    learner.until(lambda: learner.pressed("roof-far"))
+    handle = frame.locator("[data-handle=principal]")
     handle.focus()
     learner.page.keyboard.press("Shift+ArrowRight")
     agree(learner, cx=330)
@@ -135,8 +112,55 @@ def test_picture_matrices_controls_and_actions_are_seen_together(classroom: Clas
     learner.until(lambda: learner.frame.evaluate(lit) == 9, patience=5)
 
 
-def test_the_view_steps_back_for_a_camera_that_leaves_it_and_keeps_what_somebody_chose(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed")
+def test_in_the_scene_a_point_is_selected_the_camera_is_held_and_the_view_follows_it(classroom: Classroom) -> None:
+    learner = classroom.open("camera/embed?tilt=-10&roll=25")
+    agree(learner, pan=0, selected="roof-near")
+    start = np.array(learner.until(lambda: at_rest(learner)))
+    learner.click_on("/points/far-post")
+    agree(learner, selected="far-post")
+    learner.until(lambda: learner.pressed("far-post"))
+    touch(learner, learner.place_of("/points/cube-left"))
+    agree(learner, selected="cube-left")
+
+    x, y = learner.place_of("/eye")
+    learner.pull((x, y), -20, -16)
+    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/eye"), [x - 20, y - 16], atol=3))
+    solution = agree(learner, pan=0, tilt=-10)
+    assert np.linalg.norm(np.subtract(solution["center"], [0, -4, 1.2])) > 0.1
+    np.testing.assert_allclose(
+        learner.scene.world_pose("/eye")[:3, 3] - (0, 0, LIFT), solution["center"], rtol=0, atol=1e-6
+    )
+    center = solution["center"]
+    x, y = learner.place_of("/look")
+    learner.pull((x, y), -25, -10)
+    learner.until(lambda: learner.params["pan"] != 0)
+    solution = agree(learner, position=center, roll=25)
+    assert learner.params["pan"] > 0.0
+    grip = learner.scene.world_pose("/look")[:3, 3] - center
+    np.testing.assert_allclose(grip / np.linalg.norm(grip), solution["R"][2], rtol=0, atol=1e-9)
+    learner.press("Reset")
+    agree(learner, pan=0, selected="roof-near")
+    learner.until(lambda: np.testing.assert_allclose(learner.sockets.camera["position"], start, atol=1e-4))
+
+    learner.find("switch", "Look through the camera").click()
+
+    def through(**expected: Any) -> None:
+        solution = learner.solution(through=True, **expected)
+        camera = learner.sockets.camera
+        np.testing.assert_allclose(camera["position"], solution["center"], rtol=0, atol=1e-5)
+        turned = Rotation.from_quat(camera["wxyz"], scalar_first=True).as_matrix()
+        np.testing.assert_allclose(turned, np.transpose(solution["R"]), rtol=0, atol=1e-5)
+        frustum = solution["frustum"]
+        assert np.tan(camera["fov"] / 2) >= abs(frustum["corners"][2][1]) / frustum["depth"]
+
+    learner.until(through)
+    learner.press_keys("pan", "PageUp")
+    learner.until(lambda: through(pan=10))
+    assert "view" not in learner.address
+    learner.find("switch", "Look through the camera").click()
+    learner.until(lambda: np.testing.assert_allclose(learner.sockets.camera["position"], start, atol=1e-4))
+    assert learner.sockets.camera["fov"] == pytest.approx(0.7, abs=1e-6)
+    assert not learner.params["through"]
 
     def away() -> float:
         camera = learner.sockets.camera
@@ -171,30 +195,6 @@ def at_rest(learner: Learner) -> Array:
     learner.page.wait_for_timeout(400)
     np.testing.assert_allclose(learner.sockets.camera["position"], before, atol=1e-9)
     return before
-
-
-def test_the_scene_is_seen_through_the_camera_and_from_where_it_was_again(classroom: Classroom) -> None:
-    learner = classroom.open("camera/embed?tilt=-10&roll=25")
-    first = np.array(learner.until(lambda: at_rest(learner)))
-    learner.find("switch", "Look through the camera").click()
-
-    def through(**expected: Any) -> None:
-        solution = learner.solution(through=True, **expected)
-        camera = learner.sockets.camera
-        np.testing.assert_allclose(camera["position"], solution["center"], rtol=0, atol=1e-5)
-        turned = Rotation.from_quat(camera["wxyz"], scalar_first=True).as_matrix()
-        np.testing.assert_allclose(turned, np.transpose(solution["R"]), rtol=0, atol=1e-5)
-        frustum = solution["frustum"]
-        assert np.tan(camera["fov"] / 2) >= abs(frustum["corners"][2][1]) / frustum["depth"]
-
-    learner.until(through)
-    learner.press_keys("pan", "PageUp")
-    learner.until(lambda: through(pan=10))
-    assert "view" not in learner.address
-    learner.find("switch", "Look through the camera").click()
-    learner.until(lambda: np.testing.assert_allclose(learner.sockets.camera["position"], first, atol=1e-4))
-    assert learner.sockets.camera["fov"] == pytest.approx(0.7, abs=1e-6)
-    assert not learner.params["through"]
 
 
 def test_dolly_zoom_keeps_the_house_as_tall_in_every_state_on_the_way(classroom: Classroom) -> None:

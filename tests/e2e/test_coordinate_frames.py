@@ -71,15 +71,13 @@ def shown(learner: Learner) -> None:
 
 
 def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed?convention=opengl&show_rule=0")
+    learner = classroom.open_column("coordinate-frames/embed?convention=opengl&show_rule=0")
     agree(learner, convention="opengl", handedness=None)
-    shown(learner)
 
     learner.choose("convention", "ros")
     solution = agree(learner, convention="ros", point=[-0.6, -1, 0.8])
     np.testing.assert_allclose(solution["basis"], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     np.testing.assert_allclose(held(learner), POINT, atol=1e-12)
-    shown(learner)
 
     learner.choose("handedness", "left")
     solution = agree(learner, handedness="left", point=[-0.6, -1, -0.8])
@@ -94,14 +92,34 @@ def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
     assert agree(learner, handedness=None, point=[-0.6, -1, 0.8])["determinant"] == 1
     assert "handedness" not in learner.address
 
+    learner.until(lambda: "turn" not in learner.address)  # the axes have come round
     learner.reload()
     agree(learner, convention="ros", to="camera", point=[-0.6, -1, 0.8])
 
 
-def test_the_point_is_dragged_in_axes_of_either_hand(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed?convention=unreal&point=-0.6,1,0.8&show_rule=0")
-    before = np.array(agree(learner)["point_world"])
+def test_the_second_frame_and_the_point_are_pulled_in_axes_of_either_hand(classroom: Classroom) -> None:
+    learner = classroom.open(
+        "coordinate-frames/embed?convention=ros&point=-0.6,-1,0.8&to=camera&origin=0.2,-1.2,0&show_rule=0"
+    )
+    first = agree(learner)
+    shown(learner)
+    learner.pull(learner.place(first["origin_world"]), 40, 30)
+    learner.until(lambda: learner.params["origin"] != [0.2, -1.2, 0])
+    pulled = agree(learner)
+    np.testing.assert_allclose(pulled["point_world"], first["point_world"], atol=1e-12)
+    assert pulled["direction_to"] == first["direction_to"]
+    assert np.abs(np.subtract(pulled["homogeneous_to"], first["homogeneous_to"])).max() > 0.05
+
+    def drawn() -> None:
+        picture = Picture(learner)
+        assert picture.shows("held", pulled["origin_world"], within=6), picture.around(pulled["origin_world"])
+
+    learner.until(drawn)
+
+    learner.choose("convention", "unreal")
+    before = np.array(agree(learner, convention="unreal", point=[-0.6, 1, 0.8])["point_world"])
     np.testing.assert_allclose(before, POINT, atol=1e-12)
+    shown(learner)
     camera = dict(learner.sockets.camera)
 
     x, y = learner.place(before)
@@ -165,32 +183,16 @@ def test_w_goes_to_zero(classroom: Classroom) -> None:
 
 
 def test_it_opens_with_two_frames_whose_product_is_beside_the_scene(classroom: Classroom) -> None:
+    learner = classroom.open_column("coordinate-frames/embed")
+    solution = agree(learner, convention="ros", to="camera")
+    assert np.linalg.norm(np.subtract(solution["homogeneous_to"], solution["direction_to"])[:3]) > 0.5
+    assert "to=" not in learner.address
+    learner.says("Pull X′ Y′ Z′ by their ring")
     for width, height in ((1280, 800), (700, 600), (560, 315)):
-        learner = classroom.open_column("coordinate-frames/embed", size={"width": width, "height": height})
-        solution = agree(learner, convention="ros", to="camera")
-        assert np.linalg.norm(np.subtract(solution["homogeneous_to"], solution["direction_to"])[:3]) > 0.5
-        assert "to=" not in learner.address
+        learner.page.set_viewport_size({"width": width, "height": height})
         shown = learner.frame.evaluate(
             "() => (({right, bottom}) => [right, bottom])"
             "(document.querySelector('.s3-key math').lastElementChild.getBoundingClientRect())"
         )
-        assert shown[0] <= width
-        assert shown[1] <= height
-        learner.says("Pull X′ Y′ Z′ by their ring")
-
-
-def test_the_second_frame_is_pulled_by_its_ring(classroom: Classroom) -> None:
-    learner = classroom.open("coordinate-frames/embed")
-    before = agree(learner)
-    learner.pull(learner.place(before["origin_world"]), 40, 30)
-    learner.until(lambda: learner.params["origin"] != [0.2, -1.2, 0])
-    after = agree(learner)
-    np.testing.assert_allclose(after["point_world"], before["point_world"], atol=1e-12)
-    assert after["direction_to"] == before["direction_to"]
-    assert np.abs(np.subtract(after["homogeneous_to"], before["homogeneous_to"])).max() > 0.05
-
-    def drawn() -> None:
-        picture = Picture(learner)
-        assert picture.shows("held", after["origin_world"], within=6), picture.around(after["origin_world"])
-
-    learner.until(drawn)
+        assert 0 < shown[0] <= width
+        assert 0 < shown[1] <= height

@@ -45,12 +45,9 @@ def answers(learner: Learner, kind: str, more_than: int) -> Any:
 
 
 def test_a_course_page_and_a_sim_talk_to_each_other(classroom: Classroom, course: CourseSite) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter(painted=False)
     course.show(learner, "euler-angles/embed?yaw=45")
     in_frame(learner)
-    assert answers(learner, "sim3:ready", 0)["slug"] == "euler-angles"
-    height = answers(learner, "sim3:height", 0)
-    assert height["height"] > 0
     first = answers(learner, "sim3:state", 0)
     assert first["from"] == learner.url
     assert (first["params"]["yaw"], first["query"]) == (45, "yaw=45")
@@ -122,7 +119,7 @@ def test_a_sandboxed_frame_works_too(classroom: Classroom, course: CourseSite) -
 
 
 def test_a_bad_link_in_a_frame_tells_the_page(classroom: Classroom, course: CourseSite) -> None:
-    learner = classroom.enter(size={"width": 720, "height": 640})
+    learner = classroom.enter(size={"width": 720, "height": 640}, painted=False)
     learner.witness.expect("status of 422")
     course.show(learner, "euler-angles/embed?yaw=999&pitch=45")
     error = answers(learner, "sim3:error", 0)

@@ -15,6 +15,7 @@ from sims.kit.readout import significant
 from tests.e2e.conftest import Classroom
 from tests.e2e.learner import Learner, box
 from tests.e2e.picture import Picture
+from tests.e2e.test_phone import touch
 
 Array = npt.NDArray[np.float64]
 RECTIFIED = "left=-0.6,0,1"
@@ -121,8 +122,8 @@ def test_both_pictures_are_made_large_together(classroom: Classroom) -> None:
     assert [box(picture)["width"] for picture in pictures] == small
 
 
-def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_plan(classroom: Classroom) -> None:
-    learner = classroom.open(f"epipolar/embed?{RECTIFIED}")
+def test_the_point_is_held_in_a_picture_and_a_camera_on_the_plan(classroom: Classroom) -> None:
+    learner = classroom.open_column(f"epipolar/embed?{RECTIFIED}")
     before = agree(learner, point=[0.3, 4, 1.2])
     learner.pull(middle(learner, "left_pixel"), -12, 8)
     learner.until(lambda: learner.params["point"] != [0.3, 4, 1.2])
@@ -132,12 +133,6 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
     assert learner.params["point"][1] == pytest.approx(4.0), "its depth stays"
     assert after["residual"] == pytest.approx(0.0, abs=1e-9)
 
-    place = learner.scene.world_pose("/right_center")[:3, 3]
-    learner.until(lambda: Picture(learner).shows("held", place, within=8))
-    learner.pull(learner.place(place), 30, -6)
-    learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
-    agree(learner)
-
     held = learner.frame.locator("[data-handle=plan_left]")
     held.scroll_into_view_if_needed()
     held.press("ArrowUp")
@@ -146,6 +141,21 @@ def test_the_point_is_held_in_a_picture_and_a_camera_in_the_scene_and_on_the_pla
     x, y, z = learner.params["left"]
     assert (x, z) == (pytest.approx(-0.6), 1)
     assert 0.01 < y < 0.05, "up on the plan is forward"
+
+
+def test_a_camera_is_pulled_and_a_point_selected_in_the_scene(classroom: Classroom) -> None:
+    learner = classroom.open(f"epipolar/embed?{RECTIFIED}")
+    agree(learner, selected=1)
+    place = learner.scene.world_pose("/right_center")[:3, 3]
+    learner.until(lambda: Picture(learner).shows("held", place, within=8))
+    learner.click_on("/points/5")
+    agree(learner, selected=5, pick=None)
+    learner.until(lambda: learner.pressed("5"))
+    touch(learner, learner.place_of("/points/4"))
+    agree(learner, selected=4)
+    learner.pull(learner.place(place), 30, -6)
+    learner.until(lambda: learner.params["right"] != [0.6, 0, 1])
+    agree(learner)
 
 
 def test_presets_and_controls_answer(classroom: Classroom) -> None:
@@ -187,8 +197,8 @@ def test_without_a_baseline_it_is_said_and_nothing_else_breaks(classroom: Classr
     assert agree(learner, right=[0.5, 0, 1])["rank"] == 2
 
 
-def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(classroom: Classroom) -> None:
-    learner = classroom.open(f"epipolar/embed?{RECTIFIED}")
+def test_a_point_lights_up_and_is_selected_in_pictures_plan_and_table(classroom: Classroom) -> None:
+    learner = classroom.open_column(f"epipolar/embed?{RECTIFIED}")
     frame = learner.frame
     agree(learner, selected=1)
     everywhere = "g g g tr"
@@ -214,10 +224,6 @@ def test_a_point_lights_up_and_is_selected_in_pictures_plan_table_and_scene(clas
     learner.page.mouse.down()
     learner.page.mouse.up()
     agree(learner, selected=1, point=[0.3, 4, 1.2])
-
-    learner.click_on("/points/5")
-    agree(learner, selected=5, pick=None)
-    learner.until(lambda: learner.pressed("5"))
 
 
 def test_a_click_on_a_point_in_a_picture_picks_its_very_pixel_and_selects_it(classroom: Classroom) -> None:

@@ -86,18 +86,18 @@ def test_a_slider_turns_the_aircraft_from_hand_to_pixel(classroom: Classroom) ->
     agree(learner, pitch=-30, roll=10)
     shown_at_tips(learner, "z")
 
-    learner.open("euler-angles/embed?yaw=40&pitch=-20")
+    learner.press("Reset")
+    agree(learner, yaw=60, pitch=-30, progress=3)
     for grip, name, (dx, dy) in (("/held_first", "yaw", (40, -10)), ("/held_second", "pitch", (5, 40))):
-        before, place = dict(learner.params), learner.place_of(grip)
+        start, place = dict(learner.params), learner.place_of(grip)
         learner.pull(place, dx, dy)
-        learner.until(lambda: learner.params[name] != before[name])  # noqa: B023
-        agree(learner, **{other: before[other] for other in {"yaw", "pitch", "roll"} - {name}})
+        learner.until(lambda: learner.params[name] != start[name])  # noqa: B023
+        agree(learner, **{other: start[other] for other in {"yaw", "pitch", "roll"} - {name}})
     x, y = learner.place_of("/held_nose")
     learner.pull((x, y), -20, -30)
     learner.until(lambda: abs(learner.place_of("/held_nose")[1] - (y - 30)) < 15)
     agree(learner)
 
-    learner.open("euler-angles/embed?yaw=40&roll=-25")
     learner.type("pitch", "90")
     agree(learner, pitch=90)
     shown_at_tips(learner, "z")

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite, heard, say
-from tests.e2e.learner import Learner
+from tests.e2e.learner import Learner, box
+from tests.e2e.test_phone import touch
 
 RESIZE = "([width, height]) => Object.assign(document.querySelector('iframe'), { width, height })"
-DROP = """() => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File(["neither points nor words"], "notes.ply"));
-    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
-}"""
 
 
 @pytest.fixture
@@ -133,19 +130,39 @@ def said(learner: Learner, **words: Any) -> bool:
     return any(words.items() <= message.items() for message in learner.page.evaluate("heard"))
 
 
-def test_a_wheel_scrolls_the_course_page_past_a_frame_until_the_scene_is_clicked(
+def test_a_finger_or_wheel_scrolls_the_course_page_past_a_frame_until_the_scene_is_meant(
     classroom: Classroom, course: CourseSite
 ) -> None:
-    learner = classroom.enter()
+    learner = classroom.enter(size=ViewportSize(width=760, height=700), has_touch=True)
     course.show(learner, "euler-angles/embed", after="<p>After</p>" * 60)
     learner.enter_frame()
-    distance = away(learner)
-    at = learner.page.locator("iframe").bounding_box()
-    assert at is not None
+    learner.frame.locator(".s3-still").wait_for(state="detached")
+    camera = learner.sockets.camera["position"]
+    at = box(learner.page.locator("iframe"))
+    x, y = at["x"] + 80, at["y"] + 200
+    touch(learner, *((x, y - 18 * k) for k in range(9)))
+    learner.until(lambda: learner.page.evaluate("scrollY") > 60)
+    np.testing.assert_allclose(learner.sockets.camera["position"], camera, atol=1e-9)
+    learner.frame.get_by_text("Tap the scene to turn it").wait_for()
+    assert learner.params["pitch"] == 20, "what the finger passes isn't held"
+
+    scrolled = learner.until(lambda: come_to_rest(lambda: learner.page.evaluate("scrollY"), learner))
+    beside = at["x"] + 16  # the aircraft
+    touch(learner, (beside, 200))
+    shared = learner.frame.locator(".s3-scene[data-shared]")
+    shared.wait_for(state="detached")
+    touch(learner, *((beside, 200 + 24 * k) for k in range(5)))
+    learner.until(lambda: not np.allclose(learner.sockets.camera["position"], camera, atol=0.05))
+    assert learner.page.evaluate("scrollY") == scrolled
+
     mouse = learner.page.mouse
-    mouse.move(at["x"] + 80, at["y"] + 200)
+    mouse.move(x, 300)
+    mouse.move(750, 300)
+    shared.wait_for()
+    distance = learner.until(lambda: come_to_rest(lambda: away(learner), learner))
+    mouse.move(x, 300)
     mouse.wheel(0, 60)
-    learner.until(lambda: learner.page.evaluate("scrollY") == 60)
+    learner.until(lambda: learner.page.evaluate("scrollY") == scrolled + 60)
     learner.frame.get_by_text("Click the scene, or hold Ctrl").wait_for()
     assert away(learner) == pytest.approx(distance)
     learner.page.keyboard.down("Control")
@@ -153,33 +170,33 @@ def test_a_wheel_scrolls_the_course_page_past_a_frame_until_the_scene_is_clicked
     learner.page.keyboard.up("Control")
     learner.until(lambda: away(learner) < 0.99 * distance)
     nearer = away(learner)
-    mouse.click(at["x"] + 80, at["y"] + 200)
+    mouse.click(x, 300)
     mouse.wheel(0, 200)
     learner.until(lambda: away(learner) > 1.01 * nearer)
-    assert learner.page.evaluate("scrollY") == 60
+    assert learner.page.evaluate("scrollY") == scrolled + 60
 
 
-@pytest.mark.parametrize("reason", ["This server saw Host “backend:8000”, but the page comes from elsewhere.", ""])
-def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom, reason: str) -> None:
+def come_to_rest(what: Callable[[], float], learner: Learner) -> float:
+    """A number, once it glides no more."""
+    before = what()
+    learner.page.wait_for_timeout(300)
+    assert what() == before
+    return before
+
+
+def test_a_page_without_its_websocket_says_what_to_tell(classroom: Classroom) -> None:
     learner = classroom.enter_alone()
+    learner.painted = False
     learner.witness.expect("WebSocket")
-    learner.page.route_web_socket(
-        re.compile("/s/"), lambda socket: socket.close(code=4403 if reason else 1011, reason=reason)
-    )
-    learner.page.goto(f"{learner.url}/sims/quaternion/embed")
-    trouble = learner.page.get_by_role("alert").filter(has_text="can’t reach its server")
-    trouble.wait_for()
-    assert (reason or "Upgrade and Connection") in (trouble.text_content() or "")
-
-
-def test_a_bad_file_that_is_dropped_is_spoken_of_where_it_can_be_seen(classroom: Classroom) -> None:
-    learner = classroom.open_column("point-cloud/embed")
-    learner.witness.expect("status of 422")
-    assert not learner.page.locator(".s3-upload").is_visible()
-    learner.page.evaluate(DROP)
-    notice = learner.page.locator(".s3-notice").filter(has_text="Nothing has changed")
-    notice.wait_for()
-    assert "notes.ply" in (notice.text_content() or "")
+    for reason in ("This server saw Host “backend:8000”, but the page comes from elsewhere.", ""):
+        learner.page.route_web_socket(
+            re.compile("/s/"),
+            lambda socket: socket.close(code=4403 if reason else 1011, reason=reason),  # noqa: B023
+        )
+        learner.page.goto(f"{learner.url}/sims/quaternion/embed")
+        trouble = learner.page.get_by_role("alert").filter(has_text="can’t reach its server")
+        trouble.wait_for()
+        assert (reason or "Upgrade and Connection") in (trouble.text_content() or "")
 
 
 BLIND = """(() => {
@@ -191,17 +208,18 @@ BLIND = """(() => {
 })()"""
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_without_webgl_all_but_the_scene_works(classroom: Classroom, theme: str) -> None:
+def test_without_webgl_all_but_the_scene_works(classroom: Classroom) -> None:
     learner = classroom.enter_alone()
     learner.witness.expect("WebGL", "THREE.")
     learner.witness.failures = ("Error creating WebGL context",)
     learner.page.add_init_script(BLIND)
-    learner.page.goto(f"{learner.url}/sims/quaternion/embed?theme={theme}")
     trouble = learner.page.get_by_role("alert").filter(has_text="can’t draw 3D")
-    trouble.wait_for()
-    learner.page.wait_for_function("window.sim3.live === true")
-    learner.type("angle", "120")
-    learner.until(lambda: learner.params["angle"] == 120)
+    for theme in ("light", "dark"):
+        learner.page.goto(f"{learner.url}/sims/quaternion/embed?theme={theme}")
+        trouble.wait_for()
+        learner.page.wait_for_function("window.sim3.live === true")
+        learner.type("angle", "120")
+        learner.until(lambda: learner.params["angle"] == 120)
+        learner.sockets.forget()
     trouble.get_by_role("link").click()
     learner.page.get_by_role("heading", name="Quaternions, without the scene").wait_for()

@@ -66,7 +66,6 @@ def test_sliders_turn_the_rings_and_colours_are_where_their_axes_are(classroom: 
 
     learner.until(colours)
 
-    learner.open("gimbal-lock/embed?yaw=20")
     for name, grip, (dx, dy) in (("yaw", "/grip_outer", (60, 10)), ("pitch", "/grip_middle", (-10, 70))):
         before, (x, y) = dict(learner.params), learner.place_of(grip)
         learner.pull((x, y), dx, dy)

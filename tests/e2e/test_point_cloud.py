@@ -16,6 +16,7 @@ from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite
 from tests.e2e.learner import Learner
 from tests.e2e.picture import Picture
+from tests.e2e.test_phone import touch
 
 SMALL: ViewportSize = {"width": 720, "height": 520}
 RED_AND_BLUE = np.array([(255, 0, 0), (0, 0, 255)], np.uint8)
@@ -75,6 +76,10 @@ def test_a_click_selects_the_point_under_it(classroom: Classroom) -> None:
     learner.type("selected", "")
     learner.sees(selected=None)
 
+    touch(learner, (x, y))
+    learner.until(lambda: learner.params["selected"] is not None)
+    np.testing.assert_allclose(learner.solved()["selected"]["position"], aim, atol=0.35)
+
 
 def test_a_registration_is_stepped(classroom: Classroom) -> None:
     learner = classroom.open_column(
@@ -92,30 +97,30 @@ def test_a_registration_is_stepped(classroom: Classroom) -> None:
 
 def test_long_work_says_how_far_it_is_and_is_cancelled(classroom: Classroom, tmp_path: Path) -> None:
     """The worst of clouds, all in one place, takes seconds on any machine."""
-    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5&neighbors=5", size=SMALL)
+    learner = classroom.open_column("point-cloud/embed?voxel_size=0.5&color=variation", size=SMALL)
     path = tmp_path / "one place.ply"
     path.write_bytes(ply_bytes(Cloud("", np.ones((500_000, 3)))))
     bring(learner, path)
     learner.until(lambda: agree_on_file(learner))
-    learner.choose("color", "variation")
     agree(learner, color="variation")
-    learner.type("voxel_size", "0")
-    agree(learner, voxel_size=0, neighbors=5)
     assert any(cancelled(learner, neighbors) for neighbors in (50, 49, 48)), "nothing was said of long work"
-    agree(learner, neighbors=learner.params["neighbors"])
+    agree(learner, voxel_size=0.5)
     learner.frame.get_by_role("group", name="Work in progress").wait_for(state="hidden")
 
 
 def cancelled(learner: Learner, neighbors: int) -> bool:
     """Begin long work and cancel it; False if it was done before, as on a quick machine it may be."""
-    before, version = learner.params["neighbors"], learner.sockets.state["version"]
-    work = learner.frame.get_by_role("group", name="Work in progress")
+    learner.type("voxel_size", "0.5")  # all are one
     learner.type("neighbors", str(neighbors))
+    agree(learner, voxel_size=0.5, neighbors=neighbors)
+    version = learner.sockets.state["version"]
+    work = learner.frame.get_by_role("group", name="Work in progress")
+    learner.type("voxel_size", "0")
     with suppress(TimeoutError):
         work.get_by_text("Estimating normals").wait_for(timeout=8_000)
         work.get_by_role("button", name="Cancel").dispatch_event("click", timeout=1_000)
     learner.until(lambda: learner.sockets.state["version"] > version)
-    return bool(learner.params["neighbors"] == before)
+    return bool(learner.params["voxel_size"] == 0.5)
 
 
 def bring(learner: Learner, path: Path) -> None:
@@ -187,7 +192,7 @@ def test_a_file_is_brought_in_a_sandboxed_frame(classroom: Classroom, tmp_path: 
     """Its origin is its own: what it sends crosses origins, and the browser asks the server first."""
     path = tmp_path / "mine.csv"
     path.write_text("x,y,z\n0,0,0\n2,1,0.5\n1,1,1\n")
-    learner = classroom.enter()
+    learner = classroom.enter(painted=False)
     with CourseSite() as course:
         course.show(learner, "point-cloud/embed?voxel_size=0.5", 'sandbox="allow-scripts"')
         learner.enter_frame()

@@ -36,28 +36,33 @@ def agree(learner: Learner, **expected: Any) -> dict[str, Any]:
     return learner.until(said)
 
 
-def test_sliders_turn_and_stretch_the_arm_and_the_link_restores_it(classroom: Classroom) -> None:
-    learner = classroom.open("transform-chain/embed")
-    agree(learner, angles=[30, 40, -30], lengths=[1, 0.8, 0.5], axes="zyy")
+def test_sliders_and_hands_in_the_scene_turn_the_arm(classroom: Classroom) -> None:
+    learner = classroom.open("transform-chain/embed?angles=20,-40,70")
+    agree(learner, angles=[20, -40, 70])
     before = tip(learner)
     shown(learner)
 
+    learner.type("angles.0", "50")
+    agree(learner, angles=[50, -40, 70], trace=1)
     learner.press_keys("angles.1", "ArrowRight", "ArrowRight")
-    agree(learner, angles=[30, 41, -30], trace=2)
-    learner.type("angles.0", "75")
-    agree(learner, angles=[75, 41, -30], trace=1)
+    agree(learner, angles=[50, -39, 70], trace=2)
     shown(learner)
     assert not Picture(learner).shows("x", before, within=1), "the end effector is still where it was"
 
-    learner.type("lengths.2", "0.9")
-    agree(learner, lengths=[1, 0.8, 0.9])
-    learner.choose("axes.2", "z")
-    solution = agree(learner, axes="zyz")
+    x, y = learner.place_of("/grip")
+    learner.pull((x, y), -30, -24)
+    learner.until(lambda: learner.params["angles"] != [50, -39, 70])
+    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/grip"), [x - 30, y - 24], atol=3))
+    solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
+    assert solution["pull_distance"] is None
 
-    learner.choose("show", "composed")
-    agree(learner, show="composed")
-    learner.reload()
-    assert agree(learner, angles=[75, 41, -30], lengths=[1, 0.8, 0.9], axes="zyz", show="composed") == solution
+    turned = solution["holds"][0]
+    u, v = learner.place_of("/turn1")
+    learner.pull((u, v), 24, 0)
+    learner.until(lambda: learner.params["trace"] == 1)
+    held = agree(learner, lengths=[1, 0.8, 0.5])
+    assert np.hypot(*np.subtract(held["holds"][0], turned)[:2]) > 0.02
+    assert held["holds"][0][2] == 0.0, "it goes round, wherever it is pulled"
 
 
 def tip(learner: Learner) -> Array:
@@ -109,23 +114,17 @@ def test_links_come_and_go_and_two_transforms_are_swapped(classroom: Classroom) 
     agree(learner, angles=[10, 20, 30], axes="zyy", swap=2)
 
 
-def test_the_end_effector_is_dragged_and_typed(classroom: Classroom) -> None:
-    learner = classroom.open("transform-chain/embed?angles=20,-40,70")
-    agree(learner, angles=[20, -40, 70])
-    x, y = learner.place_of("/grip")
-    learner.pull((x, y), -30, -24)
-    learner.until(lambda: learner.params["angles"] != [20, -40, 70])
-    learner.until(lambda: np.testing.assert_allclose(learner.place_of("/grip"), [x - 30, y - 24], atol=3))
-    solution = agree(learner, pull=None, lengths=[1, 0.8, 0.5])
-    assert solution["pull_distance"] is None
-
-    turned = solution["holds"][0]
-    u, v = learner.place_of("/turn1")
-    learner.pull((u, v), 24, 0)
-    learner.until(lambda: learner.params["trace"] == 1)
-    held = agree(learner, lengths=[1, 0.8, 0.5])
-    assert np.hypot(*np.subtract(held["holds"][0], turned)[:2]) > 0.02
-    assert held["holds"][0][2] == 0.0, "it goes round, wherever it is pulled"
+def test_the_arm_is_stretched_and_sent_too_far_and_a_reload_brings_all_back(classroom: Classroom) -> None:
+    learner = classroom.open_column("transform-chain/embed")
+    agree(learner, angles=[30, 40, -30], lengths=[1, 0.8, 0.5], axes="zyy")
+    learner.type("lengths.2", "0.9")
+    agree(learner, lengths=[1, 0.8, 0.9])
+    learner.choose("axes.2", "z")
+    solution = agree(learner, axes="zyz")
+    learner.choose("show", "composed")
+    agree(learner, show="composed")
+    learner.reload()
+    assert agree(learner, angles=[30, 40, -30], lengths=[1, 0.8, 0.9], axes="zyz", show="composed") == solution
 
     learner.type("/grip", "9", box=3)
     learner.until(lambda: learner.params["pull"] is not None)

@@ -62,7 +62,7 @@ def pixel_of(world: npt.ArrayLike, params: dict[str, Any], sign: int) -> Array:
     return np.array([320 + f * (x - sign * params["baseline"] / 2) / y, 240 - f * (z - 1) / y])
 
 
-def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
+def test_the_point_is_dragged_and_a_method_selected_in_the_scene(classroom: Classroom) -> None:
     learner = classroom.open("triangulation/embed")
     solution = agree(learner, left_uv=[410, 210], right_uv=[320, 210])
     np.testing.assert_allclose(solution["point"], [0.3, 4, 1.2], atol=1e-9)
@@ -101,6 +101,13 @@ def test_the_point_is_dragged_in_the_scene(classroom: Classroom) -> None:
     learner.until(lambda: not np.allclose(learner.sockets.camera["position"], camera["position"], atol=0.01))
     assert learner.sockets.state["version"] == version, "a drag on empty space turns the view, and nothing else"
     shown(learner)
+
+    learner.type("right_uv", f"{learner.params['right_uv'][1] + 20:.1f}", box=2)  # the methods come to stand apart
+    agree(learner, method="dlt")
+    learner.click_on("/closeup/midpoint")
+    agree(learner, method="midpoint")
+    learner.until(lambda: learner.pressed("midpoint"))
+    learner.until(lambda: learner.scene.visible("/midpoint/filled"))
 
 
 def shown(learner: Learner) -> None:
@@ -215,7 +222,7 @@ def test_parallel_rays_are_said_where_they_happen(classroom: Classroom) -> None:
 def test_an_image_point_lights_up_with_its_ray_and_a_method_is_selected_wherever_it_is_shown(
     classroom: Classroom,
 ) -> None:
-    learner = classroom.open("triangulation/embed?right_uv=320,230&baseline=0.2&method=optimal")
+    learner = classroom.open_column("triangulation/embed?right_uv=320,230&baseline=0.2&method=optimal")
     frame = learner.frame
     agree(learner, method="optimal")
     frame.locator("[data-handle=left_uv] .s3-core").hover()
@@ -242,8 +249,3 @@ def test_an_image_point_lights_up_with_its_ray_and_a_method_is_selected_wherever
     button.press("Enter")
     agree(learner, method="dlt")
     learner.until(lambda: learner.pressed("dlt"))
-
-    learner.click_on("/closeup/midpoint")
-    agree(learner, method="midpoint")
-    learner.until(lambda: learner.pressed("midpoint"))
-    learner.until(lambda: learner.scene.visible("/midpoint/filled"))
