@@ -459,6 +459,17 @@ class Learner:
         return "&".join(part for part in query.split("&") if part.split("=")[0] not in OPTIONS)
 
 
+def touch(learner: Learner, *path: tuple[float, ...]) -> None:
+    """Put a finger down, draw it along a path, and lift it; two fingers where there are x, y of both."""
+    cdp = learner.page.context.new_cdp_session(learner.page)
+    for k, places in enumerate(path):
+        points = [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(zip(places[::2], places[1::2], strict=True))]
+        cdp.send("Input.dispatchTouchEvent", {"type": "touchMove" if k else "touchStart", "touchPoints": points})
+        learner.page.wait_for_timeout(16)
+    cdp.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    cdp.detach()
+
+
 def box(locator: Locator) -> dict[str, float]:
     found = locator.bounding_box()
     assert found is not None, f"{locator} isn't on the page"

@@ -12,8 +12,7 @@ from scipy.spatial.transform import Rotation
 from sims.camera.solution import LIFT
 from sims.kit.world import PLACES, SUBJECT
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
-from tests.e2e.test_phone import touch
+from tests.e2e.learner import Learner, box, touch
 
 Array = npt.NDArray[np.float64]
 MARKS = """() => Object.fromEntries([...document.querySelectorAll("svg [data-link]")].map(

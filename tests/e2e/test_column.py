@@ -10,8 +10,7 @@ from playwright.sync_api import ViewportSize
 
 from sims import SIMS
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import LIT, THUMB, Learner, box
-from tests.e2e.test_phone import touch
+from tests.e2e.learner import LIT, THUMB, Learner, box, touch
 
 Open = Callable[..., Learner]
 PASTE = """([node, text]) => {

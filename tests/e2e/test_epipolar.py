@@ -13,9 +13,8 @@ import pytest
 from sims.epipolar.params import OTHERS
 from sims.kit.readout import significant
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
+from tests.e2e.learner import Learner, box, touch
 from tests.e2e.picture import Picture
-from tests.e2e.test_phone import touch
 
 Array = npt.NDArray[np.float64]
 RECTIFIED = "left=-0.6,0,1"

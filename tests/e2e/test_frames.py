@@ -12,8 +12,7 @@ from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite, heard, say
-from tests.e2e.learner import Learner, box
-from tests.e2e.test_phone import touch
+from tests.e2e.learner import Learner, box, touch
 
 RESIZE = "([width, height]) => Object.assign(document.querySelector('iframe'), { width, height })"
 

@@ -7,22 +7,11 @@ import pytest
 from playwright.sync_api import ViewportSize
 
 from tests.e2e.conftest import Classroom
-from tests.e2e.learner import Learner, box
+from tests.e2e.learner import Learner, box, touch
 from tests.e2e.picture import Picture
 
 PHONE: ViewportSize = {"width": 390, "height": 780}
 TOUCH = {"has_touch": True, "is_mobile": True, "device_scale_factor": 1}
-
-
-def touch(learner: Learner, *path: tuple[float, ...]) -> None:
-    """Put a finger down, draw it along a path, and lift it; two fingers where there are x, y of both."""
-    cdp = learner.page.context.new_cdp_session(learner.page)
-    for k, places in enumerate(path):
-        points = [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(zip(places[::2], places[1::2], strict=True))]
-        cdp.send("Input.dispatchTouchEvent", {"type": "touchMove" if k else "touchStart", "touchPoints": points})
-        learner.page.wait_for_timeout(16)
-    cdp.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    cdp.detach()
 
 
 def fits(learner: Learner) -> None:

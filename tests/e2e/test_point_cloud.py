@@ -14,9 +14,8 @@ from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import ply_bytes, read
 from tests.e2e.conftest import Classroom
 from tests.e2e.course import CourseSite
-from tests.e2e.learner import Learner
+from tests.e2e.learner import Learner, touch
 from tests.e2e.picture import Picture
-from tests.e2e.test_phone import touch
 
 SMALL: ViewportSize = {"width": 720, "height": 520}
 RED_AND_BLUE = np.array([(255, 0, 0), (0, 0, 255)], np.uint8)
