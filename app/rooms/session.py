@@ -331,7 +331,9 @@ class Session:
             self._highlight.left(listener, self.drawing.viewers)
         if not self.occupied:
             self.left_at = time.monotonic()
-            self.motion.stop()
+            if self.motion.task is not None:
+                self.motion.stop()
+                self._set(self.params.moved({}))  # what a motion alone sets isn't left half way
 
     def touch(self) -> None:
         """Somebody does something here."""

@@ -521,6 +521,24 @@ def test_a_motion_ends_when_nobody_looks() -> None:
     run(test)
 
 
+def test_axes_that_turn_as_everybody_leaves_are_where_they_turned_to() -> None:
+    """As when a page is loaded anew meanwhile: nobody would turn them on."""
+    sim = by_slug("coordinate-frames")
+    assert sim is not None
+
+    async def test() -> None:
+        room = Room(sim=sim, start=sim.params())
+        await room.drawn()
+        room.session.enter("convention", "unreal")
+        await asyncio.sleep(0.05)
+        assert room.session.params.model_dump()["turn"] is not None
+        room.session.leave(viewer=room.eye)
+        room.session.leave(listener=room.told.append)
+        assert room.session.params == sim.params().moved({"convention": "unreal"})
+
+    run(test)
+
+
 @pytest.mark.parametrize(
     ("a", "b", "half"),
     [
@@ -695,7 +713,9 @@ def test_a_challenge_whose_check_fails_keeps_no_state_from_its_pages(caplog: pyt
         return Progress(1.0 / (params.size - 5.0), "nearer")
 
     async def test() -> None:
-        challenge = Challenge(id="five", title="Five", goal="Not five.", near=near, solves={"size": 6}, misses=())
+        challenge: Challenge[Any, Any] = Challenge(
+            id="five", title="Five", goal="Not five.", near=near, solves={"size": 6}, misses=()
+        )
         room = Room(sim=dataclasses.replace(toy()[0], challenges=(challenge,)))
         room.session.change({"size": 6})
         await room.drawn()
