@@ -47,7 +47,7 @@ def test_euler_angles_on_a_phone(classroom: Classroom) -> None:
     slider.scroll_into_view_if_needed()
     track = box(slider)
     x, y = track["x"] + track["width"] * (0.5 + 10 / 360), track["y"] + track["height"] / 2
-    touch(learner, *((x + 12 * k, y) for k in range(5)))
+    touch(learner, *((x + 4 * k, y) for k in range(13)))
     learner.until(lambda: learner.params["roll"] > 40)
     learner.until(  # the last of the drag may still be on its way
         lambda: np.testing.assert_allclose(
@@ -90,7 +90,7 @@ def test_triangulation_on_a_phone(classroom: Classroom) -> None:
     assert learner.frame.evaluate("([x, y]) => !!document.elementFromPoint(x, y).closest('[data-handle]')", [x, y]), (
         "something covers the left point"
     )
-    touch(learner, *((x + 4 * k, y + k) for k in range(5)))
+    touch(learner, *((x + 4 * k / 3, y + k / 3) for k in range(13)))
     learner.until(lambda: learner.params["left_uv"][0] > 410 + 8 / scale)
     goal = [410 + 16 / scale, 210 + 4 / scale]
     learner.until(lambda: np.testing.assert_allclose(learner.params["left_uv"], goal, atol=2 / scale))
