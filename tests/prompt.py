@@ -1,7 +1,8 @@
 """`python -m tests.prompt`: the server as tests in a browser have it.
 
-It tells a new state sooner than `python -m app` does, since tests wait for little else. Whoever calls it `localhost` is
-given nothing in place of viser's client, which takes most of the time that a page needs.
+It tells a new state sooner than `python -m app` does, since tests wait for little else, and where one lesson is read it
+doesn't load all others, which takes a processor for ten seconds. Whoever calls it `localhost` is given nothing in place
+of viser's client, which takes most of the time that a page needs.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app import __main__
+from app.lessons.shelf import Shelf
 from app.rooms import telling
 from app.settings import Settings
 from app.web import create_app
@@ -41,5 +43,6 @@ def app(settings: Settings, host: ViserHost) -> FastAPI:
 
 if __name__ == "__main__":
     telling.STATE_INTERVAL = 0.05
+    Shelf.loading = lambda _: []  # type: ignore[method-assign, assignment]
     __main__.create_app = app  # type: ignore[attr-defined]
     __main__.main()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -72,11 +73,13 @@ def rod(radius: float, low: float, high: float) -> trimesh.Trimesh:
     return lathe([(0.0, low), (radius, low), (radius, high), (0.0, high)], sections=24)
 
 
+@cache
 def ring(of: Ring) -> trimesh.Trimesh:
     """The ring itself, in its own frame at rest."""
     return lathe(bar(of.radius, DEPTH, WIDTH, CHAMFER)).apply_transform(_PLANE[of.letter])
 
 
+@cache
 def stripe(of: Ring) -> trimesh.Trimesh:
     """The ring's dashes, let into its four sides: its second cue beside its colour."""
     spans = [FULL]
@@ -89,6 +92,7 @@ def stripe(of: Ring) -> trimesh.Trimesh:
     return joined([flat, round_]).apply_transform(_PLANE[of.letter])
 
 
+@cache
 def pivots(of: Ring) -> trimesh.Trimesh:
     """The two pins on which a ring turns, with caps outside what holds it. They belong to that, not to the ring."""
     holder = {"outer": YOKE, "middle": OUTER.radius, "inner": MIDDLE.radius}[of.name]
@@ -103,6 +107,7 @@ def pivots(of: Ring) -> trimesh.Trimesh:
     return joined([one, other]).apply_transform(_ALONG[of.letter])
 
 
+@cache
 def stand() -> trimesh.Trimesh:
     """A half-round arm with bearings at top and bottom, on a column and a round foot."""
     turned = trimesh.transformations.rotation_matrix(SIDE, (0, 0, 1)) @ _QUARTER["x"]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import trimesh
 
@@ -11,6 +9,7 @@ from geometry import quaternion
 from geometry.arrays import Array
 from sims.kit.palette import before_film, rgb
 from sims.kit.readout import THIN, figure, quantity
+from sims.kit.scene.bodies import rings
 from sims.kit.scene.nodes import Arrows, Cloud, Node
 from sims.kit.scene.stage import Stage
 from sims.kit.types import ORIGIN
@@ -184,11 +183,7 @@ class Ring:
 
     def __init__(self, stage: Stage) -> None:
         self.node: Node = stage.group("/selected")
-        ring = trimesh.creation.torus(major_radius=1.0, minor_radius=0.13, major_sections=48, minor_sections=8)
-        turns = np.eye(4), trimesh.transformations.rotation_matrix(math.pi / 2.0, [1, 0, 0])
-        self.rings = [
-            stage.mesh(f"/selected/ring{k}", ring.copy().apply_transform(turn), "held") for k, turn in enumerate(turns)
-        ]
+        self.rings = [stage.mesh(f"/selected/ring{k}", ring, "held") for k, ring in enumerate(rings(1.0, 0.26))]
         self.normal = stage.lines("/selected/normal", "held", width=3.0)
         stage.linked("selected", self.normal)
         self.label = stage.label("/selected/label", "", anchor="bottom-left")

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import trimesh
-from trimesh.creation import box, cone, cylinder, icosphere
+from trimesh.creation import box, cone, cylinder, icosphere, torus
 
 
 def moved(mesh: trimesh.Trimesh, offset: tuple[float, float, float]) -> trimesh.Trimesh:
@@ -49,6 +49,14 @@ def aircraft(scale: float = 1.0) -> dict[str, trimesh.Trimesh]:
     mark = _slab([(0.017, 0.745), (-0.06, 0.98), (-0.24, 0.98), (-0.24, 0.745)], 0.05)
     hull = joined([fuselage, nose, canopy, left, right, tail, fin])
     return {"hull": hull.apply_scale(scale), "mark": mark.apply_scale(scale)}
+
+
+@lru_cache(maxsize=32)
+def rings(radius: float, thickness: float) -> tuple[trimesh.Trimesh, trimesh.Trimesh]:
+    """Two rings round the origin, one in the plane of x and y and one upright, across y."""
+    flat = torus(major_radius=radius, minor_radius=thickness / 2.0, major_sections=48, minor_sections=8)
+    upright = flat.copy().apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0]))
+    return flat, upright
 
 
 @lru_cache(maxsize=3)

@@ -212,12 +212,9 @@ class Stage:
         an `axis`, a unit vector through the world's origin, stays on its circle about that.
         """
         ball = self.ball(name, radius, role)
-        ring = trimesh.creation.torus(
-            major_radius=halo * radius, minor_radius=0.07 * halo * radius, major_sections=48, minor_sections=8
-        )
         rings = [
-            self.mesh(f"{name}/halo{k}", ring.copy().apply_transform(turn), role, opacity=0.55)
-            for k, turn in enumerate([np.eye(4), trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])])
+            self.mesh(f"{name}/halo{k}", ring, role, opacity=0.55)
+            for k, ring in enumerate(bodies.rings(halo * radius, 0.14 * halo * radius))
         ]
         dragging.listen(ball.handle, partial(self._drag, name), None if axis is None else self._round(axis))
         return Grip(ball.handle, rings)
