@@ -11,15 +11,23 @@ export class Address {
     this.opened = stateQuery(sim.opened);
     this.query = stateQuery(sim.search);
     const brought = new Query(location.hash.slice(1));
-    this.ticket = brought.get("steer") ?? history.state?.ticket ?? "";
-    this.left = brought.get("room") ?? history.state?.left ?? ""; // the room of which this is a copy
+    this.ticket = brought.get("steer") ?? sim.before?.ticket ?? "";
+    this.left = brought.get("room") ?? sim.before?.left ?? ""; // the room of which this is a copy
   }
 
   show() {
     try {
       const { ticket, left } = this;
-      history.replaceState({ path: sim.path, opened: this.opened, ticket, left }, "", this.of(sim.address));
+      const state = { path: sim.path, opened: this.opened, ticket, left };
+      history.replaceState(state, "", this.of(sim.address));
+      if (top === window) this.keep(JSON.stringify(state));
     } catch { /* some browsers let a sandboxed frame change no more than its query */ }
+  }
+
+  // What is reloaded while its address changes is a new page to the browser, whose history holds nothing: boot.js asks here.
+  keep(state) {
+    if (this.kept !== state) sessionStorage.setItem(sim.address, state);
+    this.kept = state;
   }
 
   // A path with the state and this page's options.

@@ -37,6 +37,11 @@ def test_the_address_holds_the_state_and_reload_restores_it(classroom: Classroom
         )
     )
 
+    learner.frame.evaluate("history.replaceState(null, '', location.href)")  # as where it is reloaded while it changes
+    learner.reload()
+    learner.sees(yaw=30, roll=-77, frame="extrinsic")
+    assert learner.room == room
+
     learner.press("Reset")
     learner.sees(yaw=45, pitch=20, roll=10, frame="intrinsic")
     assert set().union(*(parse_qs(urlsplit(a).query) for a in learner.addresses)) <= {

@@ -88,13 +88,19 @@ def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
     learner.choose("to", "camera")
     assert agree(learner, to="camera")["determinant"] == -1
     learner.says("improper (a reflection)")
+    come_round(learner)
     learner.choose("handedness", None)
     assert agree(learner, handedness=None, point=[-0.6, -1, 0.8])["determinant"] == 1
     assert "handedness" not in learner.address
 
-    learner.until(lambda: "turn" not in learner.address)  # the axes have come round
-    learner.reload()
+    learner.reload()  # while they turn
     agree(learner, convention="ros", to="camera", point=[-0.6, -1, 0.8])
+    come_round(learner)
+
+
+def come_round(learner: Learner) -> None:
+    """Wait until the axes that turn have come round: what is chosen just before a frame of theirs is shown as it was."""
+    learner.until(lambda: (learner.params["turn"], learner.params["turn_to"]) == (None, None))
 
 
 def test_the_second_frame_and_the_point_are_pulled_in_axes_of_either_hand(classroom: Classroom) -> None:
