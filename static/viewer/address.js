@@ -2,6 +2,7 @@
 // that Reset leads back to.
 import { Query, sim } from "./page.js";
 
+const STAYED = 3000; // milliseconds after which a page that was to be left is still there
 const OPTIONS = ["view", "controls", "theme", "only", "challenge", "lesson"];
 
 export class Address {
@@ -11,23 +12,27 @@ export class Address {
     this.opened = stateQuery(sim.opened);
     this.query = stateQuery(sim.search);
     const brought = new Query(location.hash.slice(1));
-    this.ticket = brought.get("steer") ?? sim.before?.ticket ?? "";
-    this.left = brought.get("room") ?? sim.before?.left ?? ""; // the room of which this is a copy
+    this.ticket = brought.get("steer") ?? history.state?.ticket ?? "";
+    this.left = brought.get("room") ?? history.state?.left ?? ""; // the room of which this is a copy
+    this.leaving = 0;
+    addEventListener("beforeunload", () => this.leave());
+  }
+
+  // Where the address changes while it is reloaded, the browser takes that for a new page, which has no room yet.
+  leave() {
+    clearTimeout(this.leaving);
+    this.leaving = setTimeout(() => {
+      this.leaving = 0;
+      this.show();
+    }, STAYED);
   }
 
   show() {
+    if (this.leaving) return;
     try {
       const { ticket, left } = this;
-      const state = { path: sim.path, opened: this.opened, ticket, left };
-      history.replaceState(state, "", this.of(sim.address));
-      if (top === window) this.keep(JSON.stringify(state));
+      history.replaceState({ path: sim.path, opened: this.opened, ticket, left }, "", this.of(sim.address));
     } catch { /* some browsers let a sandboxed frame change no more than its query */ }
-  }
-
-  // What is reloaded while its address changes is a new page to the browser, whose history holds nothing: boot.js asks here.
-  keep(state) {
-    if (this.kept !== state) sessionStorage.setItem(sim.address, state);
-    this.kept = state;
   }
 
   // A path with the state and this page's options.

@@ -5,14 +5,6 @@
   const root = document.documentElement;
   root.classList.toggle("s3-led", window.name === "lesson"); // the text around says what to do (names of frames: base.html)
 
-  const kept = () => {
-    try {
-      return top === window ? JSON.parse(sessionStorage.getItem(data.address)) : null;
-    } catch {
-      return null; // a browser may deny it
-    }
-  };
-
   const boot = () => {
     const given = new URLSearchParams(location.search);
     const bytes = crypto.getRandomValues(new Uint8Array(8));
@@ -20,8 +12,7 @@
     const dark = theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
     // The room and its key are in the page, never in its address; a reload goes on in the room that it left.
     const reloaded = performance.getEntriesByType("navigation")[0]?.type === "reload";
-    const before = history.state ?? (reloaded ? kept() : null);
-    const path = (reloaded && before?.path) || data.path;
+    const path = (reloaded && history.state?.path) || data.path;
     const place = new URL(path, location.href).href; // location.origin is "null" in a sandboxed frame
 
     root.style.setProperty("--s3-still", `url(${data.still[dark ? "dark" : "light"]})`);
@@ -29,9 +20,9 @@
     root.dataset.theme = dark ? "dark" : "light";
 
     window.sim3 = {
-      ...data, dark, place, path, before, keyed: !data.watching,
+      ...data, dark, place, path, keyed: !data.watching,
       viewer: Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join(""),
-      socket: place.replace(/^http/, "ws"), search: location.search, opened: before?.opened ?? location.search,
+      socket: place.replace(/^http/, "ws"), search: location.search, opened: history.state?.opened ?? location.search,
     };
     const start = () => document.body.append(Object.assign(document.createElement("script"), { src: data.main, type: "module" }));
     if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", start);

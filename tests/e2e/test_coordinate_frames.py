@@ -93,9 +93,9 @@ def test_axes_change_and_the_point_stays(classroom: Classroom) -> None:
     assert agree(learner, handedness=None, point=[-0.6, -1, 0.8])["determinant"] == 1
     assert "handedness" not in learner.address
 
-    learner.reload()  # while they turn
-    agree(learner, convention="ros", to="camera", point=[-0.6, -1, 0.8])
     come_round(learner)
+    learner.reload()
+    agree(learner, convention="ros", to="camera", point=[-0.6, -1, 0.8])
 
 
 def come_round(learner: Learner) -> None:
