@@ -39,8 +39,6 @@ NUMERIC = {slug: model.numeric for slug, model in MODELS.items()}
 each_sim = pytest.mark.parametrize("sim", SIMS, ids=lambda sim: sim.slug)
 each_state = per_sim(("sim", "name", "params"), ALL, NAMES)
 TYPED = [case for case in ALL if case[0].typed or case[0].dials]
-
-
 few_states = per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
 
 
