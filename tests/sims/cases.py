@@ -59,3 +59,14 @@ FEW = [(sim, name, params) for sim in SIMS for name, params in few(sim)]
 FEW_NAMES = [f"{sim.slug}: {name}" for sim, name, _ in FEW]
 ALL = [*FEW, *((sim, name, params) for sim in SIMS for name, params in bounds(sim))]
 NAMES = [f"{sim.slug}: {name}" for sim, name, _ in ALL]
+
+
+SOLUTIONS: dict[Params, Any] = {}
+
+
+def solved(sim: AnySim, params: Params) -> Any:
+    """The solution of a state, which is found once for all tests of a process."""
+    if params not in SOLUTIONS:
+        library = () if sim.files is None else (sim.files.library(None, 1),)
+        SOLUTIONS[params] = sim.solve(params, *library)
+    return SOLUTIONS[params]

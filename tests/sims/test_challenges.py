@@ -14,6 +14,7 @@ from sims.kit.challenge import Challenge, Progress, checked
 from sims.kit.fields import Numeric
 from sims.kit.params import Params
 from sims.kit.sim import Sim, jsonable
+from tests.sims import cases
 
 AnySim = Sim[Any, Any]
 AnyChallenge = Challenge[Any, Any]
@@ -24,15 +25,9 @@ each_challenge = pytest.mark.parametrize(
 )
 
 
-SOLUTIONS: dict[Params, Any] = {}
-
-
 def solved(sim: AnySim, params: Params) -> tuple[Params, Any]:
-    """A state with its solution, which is found once: the challenges of a sim are asked of the same states."""
-    if params not in SOLUTIONS:
-        library = () if sim.files is None else (sim.files.library(None, 1),)
-        SOLUTIONS[params] = sim.solve(params, *library)
-    return params, SOLUTIONS[params]
+    """A state with its solution."""
+    return params, cases.solved(sim, params)
 
 
 def opening(sim: AnySim) -> Params:

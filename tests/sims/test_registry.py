@@ -27,7 +27,7 @@ from sims.kit.sim import Sim, jsonable
 from tests.frames import SceneModel, differences
 from tests.per_sim import per_sim
 from tests.server import Browser, Rig
-from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES
+from tests.sims.cases import ALL, FEW, FEW_NAMES, NAMES, solved
 from tests.sims.contract import contract_of
 from tests.sims.markup import bad_attributes, bad_numbers, mistakes, without_code, words, xml
 
@@ -45,16 +45,6 @@ few_states = per_sim(("sim", "name", "params"), FEW, FEW_NAMES)
 def few_of(sim: AnySim) -> list[Params]:
     """The states of a sim that aren't bounds."""
     return [params for each, _, params in FEW if each is sim]
-
-
-SOLUTIONS: dict[Params, Any] = {}
-
-
-def solved(sim: AnySim, params: Params) -> Any:
-    """The solution of a state, which is found once for all tests of a process."""
-    if params not in SOLUTIONS:
-        SOLUTIONS[params] = sim.solve(params)
-    return SOLUTIONS[params]
 
 
 COLUMNS: dict[Params, tuple[dict[str, str], dict[str, Any], str]] = {}
