@@ -35,9 +35,7 @@ Rows = list[dict[str, Any]]
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer learners and seconds, less certain numbers")
-    parser.add_argument(
-        "--only", choices=("learners", "beside", "sessions", "opening", "felt", "clouds"), help="one part"
-    )
+    parser.add_argument("--only", choices=PARTS, help="one part")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers there too")
     args = parser.parse_args()
     if len(CORES) < 2:
@@ -164,7 +162,9 @@ def sessions_cells(row: dict[str, Any]) -> Iterator[str]:
 
 def openings(quick: bool) -> Rows:
     """How long opening takes."""
-    print("\nOpening the sim in headless Chromium, software rendering, nothing in the cache; seconds, median")
+    print(
+        "\nOpening the sim in a new headless Chromium, software rendering; seconds, median, until it is on the screen"
+    )
     table = Table("way|still picture|controls live|each")
     rows: Rows = []
     for way, times in opening.measure(1 if quick else 5, warm_up=0 if quick else 1).items():
@@ -178,9 +178,9 @@ def openings(quick: bool) -> Rows:
 def felt_speed(quick: bool) -> Rows:
     """From a hand to the numbers and the frame."""
     print("\nFrom an input in headless Chromium, software rendering, to what is seen; milliseconds, medians")
-    table = Table("sim, way        |   numbers|     frame|main thread|  layouts")
+    table = Table("sim, way                |   numbers|     frame|main thread|  layouts")
     rows: Rows = []
-    for way, took in felt.measure(3 if quick else 12).items():
+    for way, took in felt.measure(3 if quick else 12):
         rows.append({"way": way, **took})
         table.add([way, *(f"{took[name]:.0f}" for name in ("numbers", "frame", "main")), f"{took['layouts']:.1f}"])
     return rows

@@ -2,7 +2,8 @@
 
 Each input is timed from its own event: until a number beside the scene has changed, and until a scene that was drawn
 after it is on the screen (two animation frames later). Beside them stand what the page's main thread does for one
-input, and how often it lays the page out; and the same sim's sliders as viser alone has them.
+input, and how often it lays the page out; the same sim's sliders as viser alone has them; and, where `npm install p5`
+was run here, a sketch of it as the chapter writes them (benchmarks/sketch.html), lit and not.
 
 The browser is left to find out by itself whether there is a GPU, as a learner's is: without one the processor draws the
 scene and puts the page together.
@@ -10,14 +11,16 @@ scene and puts the page together.
 
 from __future__ import annotations
 
+import contextlib
 import statistics
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, CDPSession, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, CDPSession, Error, Locator, Page, sync_playwright
 
-from benchmarks.servers import SLUG, Plain, Sim3
+from benchmarks.servers import ROOT, SLUG, Plain, Sim3
 from sims import SIMS
 from tests.browser import launch_options
 
@@ -52,6 +55,13 @@ SIZE: Any = {"width": 1280, "height": 800}
 REST = 700
 """Milliseconds between two inputs, in which all comes to rest."""
 PATIENCE = 60_000
+SLOW = 10_000
+"""Milliseconds after which an input counts as one that led to no frame."""
+FEW = 3
+"""Inputs that viser alone has, which may need ten seconds for each where the processor draws."""
+P5 = ROOT / "node_modules" / "p5" / "lib" / "p5.min.js"
+SKETCH = "http://sketch.test/"
+FILES = {SKETCH: Path(__file__).with_name("sketch.html"), f"{SKETCH}p5.min.js": P5}
 
 
 class Hand:
@@ -59,6 +69,7 @@ class Hand:
 
     def __init__(self, page: Page, address: str) -> None:
         self.page = page
+        page.set_default_timeout(PATIENCE)
         page.add_init_script(WATCH)
         page.goto(address, wait_until="commit", timeout=PATIENCE)
         page.wait_for_function(LIVE, timeout=PATIENCE, polling=100)
@@ -77,6 +88,7 @@ class Hand:
             self.page.evaluate("felt.at = 0, felt.numbers = 0, felt.armed = true")
             next(inputs)()
             self.page.wait_for_timeout(REST)
+            self._wait_for_frame()
             at, number, frame = self.page.evaluate("[felt.at, felt.numbers, felt.frame]")
             if at and number and frame > 0:
                 numbers.append(number - at)
@@ -88,6 +100,11 @@ class Hand:
             "main": 1e3 * (after["TaskDuration"] - before["TaskDuration"]) / count,
             "layouts": (after["LayoutCount"] - before["LayoutCount"]) / count,
         }
+
+    def _wait_for_frame(self) -> None:
+        """Give a page that draws one frame in seconds the time for it."""
+        with contextlib.suppress(Error):
+            self.page.wait_for_function("felt.frame > 0", timeout=SLOW, polling=100)
 
     def _metrics(self) -> dict[str, float]:
         return {each["name"]: each["value"] for each in self._cdp.send("Performance.getMetrics")["metrics"]}
@@ -126,9 +143,8 @@ class Hand:
         return box["x"] + inset + (box["width"] - 2 * inset) * share, box["y"] + box["height"] / 2
 
 
-def measure(count: int) -> dict[str, dict[str, float]]:
-    """For each sim and way of moving something, what it took."""
-    found: dict[str, dict[str, float]] = {}
+def measure(count: int) -> Iterator[tuple[str, dict[str, float]]]:
+    """Each sim and way of moving something, and what it took."""
     with Sim3() as sim3, Plain() as plain, sync_playwright() as playwright:
         browser = playwright.chromium.launch(**launch_options(windows=True))
         for sim in SIMS:
@@ -139,14 +155,17 @@ def measure(count: int) -> dict[str, dict[str, float]]:
             if sim.panes is not None and any(not name.startswith("/") for name in sim.handles):
                 ways.append("picture")
             for way in ways:
-                found[f"{sim.slug}, {way}"] = _one(browser, address, way, count)
-        found["plain viser, mouse"] = _one(browser, f"http://127.0.0.1:{plain.port}/", "mouse", count)
+                yield f"{sim.slug}, {way}", _one(browser, address, way, count)
+        if P5.exists():
+            for query, kind in (("", "flat"), ("?lit", "lit")):
+                yield f"p5.js, {kind}, mouse", _one(browser, SKETCH + query, "mouse", count)
+        yield "plain viser, mouse", _one(browser, f"http://127.0.0.1:{plain.port}/", "mouse", FEW)
         browser.close()
-    return found
 
 
 def _one(browser: Browser, address: str, way: str, count: int) -> dict[str, float]:
     context = browser.new_context(viewport=SIZE, has_touch=way == "finger")
+    context.route(SKETCH + "**", lambda route: route.fulfill(path=FILES[route.request.url.partition("?")[0]]))
     try:
         hand = Hand(context.new_page(), address)
         picture = hand.page.locator("[data-handle] .s3-core").first
