@@ -25,6 +25,8 @@ SWEPT = (1.5, 7.0)
 """Metres of depth that a sweep goes through, where both cameras see them."""
 AHEAD, BEFORE = 0.5, 0.02
 """Metres before the right camera that a sweep keeps; and where the right picture's part of a trail ends."""
+DECIMALS = 12
+"""Where P slides, in metres: a link is without the last digits of a product, and p stays within 1e-9 pixels."""
 COMING, SWEEPING, BACK = 0.8, 2.6, 0.9
 """Seconds of a sweep's legs."""
 
@@ -78,7 +80,7 @@ def hold(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
     if now < LEAST:
         return {}
     depth, point = reached(p, place[0])
-    passed = *(p.trail or (now,)), now, depth
+    passed = [round(each, DECIMALS) for each in (*(p.trail or (now,)), now, depth)]
     return {"point": point, "trail": (min(passed), max(passed))}
 
 
@@ -138,5 +140,5 @@ def _before(both: Pair, start: Array, along: Array, near: float, far: float) -> 
 
 
 def _place(at: Array) -> Place:
-    x, y, z = at.tolist()
+    x, y, z = (np.round(at, DECIMALS) + 0.0).tolist()
     return x, y, z

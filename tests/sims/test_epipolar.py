@@ -440,6 +440,13 @@ def test_the_depth_has_a_slider_that_leaves_a_trail(rig: Rig) -> None:
     assert not rig.model.visible("/trail")
 
 
+def test_where_p_slides_a_link_is_without_the_last_digits_of_a_product() -> None:
+    p = EpipolarParams()
+    for depth in (2.05, 3.1):
+        p = p.changed(ray.hold(p, (depth,)))
+    assert (p.point, p.trail) == ((0.0975, 3.1, 1.155), (2.05, 4.0))
+
+
 @given(states, st.floats(0.01, 30), st.floats(0.01, 30))
 def test_a_trail_is_where_the_right_camera_sees_the_ray(p: EpipolarParams, one: float, other: float) -> None:
     p = p.changed({"trail": (one, other)})
