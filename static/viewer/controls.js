@@ -1,9 +1,11 @@
 // The controls: what is moved, typed and chosen goes to the server; what it answers is shown.
 import { lock } from "./lock.js";
-import { stepped, text } from "./numbers.js";
+import { stepped, tellValue, text } from "./numbers.js";
 import { column, sim } from "./page.js";
+import { explain } from "./words.js";
 
 const PAUSE = 900; // milliseconds without a key after which what was typed is finished
+const ANSWERED = 3000; // milliseconds after which a choice that the server said nothing about isn't so
 const TREMBLE = 3; // pixels that a finger goes without meaning it
 
 export class Controls {
@@ -12,6 +14,7 @@ export class Controls {
     this.pace = pace;
     this.known = {}; // what the server says that each input shows
     this.typing = 0;
+    this.asked = ""; // what was chosen last, until the server has answered
     this.held = this.touched = null; // the slider under a hand, and where a finger came down that may be on its way past
     column.addEventListener("input", (event) => this.input(event.target));
     column.addEventListener("change", (event) => this.change(event.target));
@@ -90,8 +93,16 @@ export class Controls {
   }
 
   change(input) {
-    if (input.dataset.choice) this.enter(input.dataset.choice, input.value);
-    else if (input.dataset.switch) this.enter(input.dataset.switch, input.checked ? "1" : "0");
+    const { choice, switch: name = choice } = input.dataset;
+    if (!name) return;
+    setTimeout(() => this.answer(name), ANSWERED);
+    this.asked = name;
+    this.enter(name, choice ? input.value : input.checked ? "1" : "0");
+  }
+
+  answer(name) {
+    if (this.asked === name) this.asked = "";
+    if (this.pace.idle) this.settle();
   }
 
   // A fold that is a choice of the state was opened or closed: by a hand, unless it shows what is so.
@@ -152,7 +163,7 @@ export class Controls {
     const ask = node.closest?.(".s3-ask");
     const act = node.closest?.("[data-act]");
     if (nudge) this.nudge(nudge.parentElement.querySelector("input"), Number(nudge.dataset.nudge));
-    else if (ask) toggle(ask);
+    else if (ask) explain(ask);
     else if (act) this.channel.send({ type: "action", name: act.dataset.act });
   }
 
@@ -161,10 +172,10 @@ export class Controls {
   show(values) {
     Object.assign(this.known, values);
     for (const name of Object.keys(values)) for (const fold of inputs("fold", name)) fold.open = values[name] === fold.dataset.open;
-    if (this.pace.idle) this.settle();
+    this.answer(this.asked in values ? this.asked : null);
   }
 
-  // Every input shows what is so, but for the one under a hand or being typed into.
+  // Every input shows what is so, but for the one under a hand, being typed into, or waiting for its answer.
   settle() {
     for (const [name, value] of Object.entries(this.known)) {
       for (const input of inputs("slide", name)) {
@@ -173,6 +184,7 @@ export class Controls {
         tellValue(input, value);
       }
       for (const box of inputs("box", name)) this.fill(box, text(value));
+      if (name === this.asked) continue;
       for (const input of inputs("switch", name)) input.checked = value;
       for (const input of inputs("choice", name)) choose(input, value);
     }
@@ -194,6 +206,7 @@ export class Controls {
     line.textContent = words;
     line.hidden = false;
     for (const box of inputs("box", name)) box.setAttribute("aria-invalid", "true");
+    this.asked = "";
     this.settle();
     line.scrollIntoView({ block: "nearest" });
     return true;
@@ -231,20 +244,7 @@ function right(place) {
   for (const box of place?.querySelectorAll("[aria-invalid]") ?? []) box.removeAttribute("aria-invalid");
 }
 
-function tellValue(input, value) {
-  const unit = input.closest(".s3-slide")?.querySelector(".s3-unit")?.textContent ?? "";
-  const says = `${text(value)}${unit && unit !== "°" ? " " : ""}${unit}`;
-  if (input.getAttribute("aria-valuetext") !== says) input.setAttribute("aria-valuetext", says);
-}
-
 function choose(input, value) {
   if (input.type === "radio") input.checked = input.value === String(value ?? "");
   else if (input.value !== String(value ?? "")) input.value = String(value ?? "");
-}
-
-function toggle(ask) {
-  const why = document.getElementById(ask.getAttribute("aria-controls"));
-  why.hidden = !why.hidden;
-  ask.setAttribute("aria-expanded", String(!why.hidden));
-  if (!why.hidden) why.scrollIntoView({ block: "nearest" });
 }

@@ -15,3 +15,10 @@ export function text(value) {
   const spelled = size && (size < 1e-4 || size >= 1e6) ? value.toExponential(5).replace(/\.?0+e/, "e") : `${Number(value.toPrecision(6))}`;
   return spelled.replace("e+", "e").replaceAll("-", "−");
 }
+
+// What a slider says of itself, with its unit.
+export function tellValue(input, value) {
+  const unit = input.closest(".s3-slide")?.querySelector(".s3-unit")?.textContent ?? "";
+  const says = `${text(value)}${unit && unit !== "°" ? " " : ""}${unit}`;
+  if (input.getAttribute("aria-valuetext") !== says) input.setAttribute("aria-valuetext", says);
+}

@@ -37,3 +37,11 @@ export class Words {
     this.notice.hidden = true;
   }
 }
+
+// A "?" says its sentence, or keeps it to itself.
+export function explain(ask) {
+  const why = document.getElementById(ask.getAttribute("aria-controls"));
+  why.hidden = !why.hidden;
+  ask.setAttribute("aria-expanded", String(!why.hidden));
+  if (!why.hidden) why.scrollIntoView({ block: "nearest" });
+}

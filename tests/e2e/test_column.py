@@ -28,6 +28,19 @@ TARGETS = """() => [...document.querySelectorAll(".s3-column :is(button, select,
     .filter(([{ width, height }]) => width && Math.min(width, height) < LEAST)
     .map(([{ width, height }, html]) => `${width}×${height} ${html}`)"""
 
+# Notes what is chosen of some, frame by frame; what is sent takes a while.
+CHOSEN = """(_, name) => {
+    const { send } = WebSocket.prototype;
+    WebSocket.prototype.send = function (...given) { setTimeout(() => send.apply(this, given), 200); };
+    const chosen = (window.chosen = []);
+    const look = () => {
+        const now = document.querySelector(`[data-choice="${name}"]:checked`).value;
+        if (now !== chosen.at(-1)) chosen.push(now);
+        requestAnimationFrame(look);
+    };
+    look();
+}"""
+
 
 @pytest.fixture
 def column(classroom: Classroom) -> Open:
@@ -248,6 +261,17 @@ def test_choices_switches_and_lists_answer(column: Open) -> None:
     held(learner, show_rays=False)
     learner.choose("projection", "weak")
     held(learner, projection="weak")
+
+
+def test_what_was_chosen_stays_chosen_while_something_moves(column: Open) -> None:
+    learner = column("coordinate-frames/embed")
+    learner.choose("convention", "opengl")
+    learner.until(lambda: learner.params["turn"])
+    learner.frame.locator("body").evaluate(CHOSEN, "handedness")
+    learner.choose("handedness", "left")
+    held(learner, handedness="left")
+    learner.until(lambda: not learner.params["turn"])
+    assert learner.frame.locator("body").evaluate("window.chosen") == ["", "left"], "back and forth before"
 
 
 def test_parts_that_change_keep_the_focus_and_what_is_open(column: Open) -> None:
