@@ -78,6 +78,7 @@ def test_back_and_forward_keep_working(classroom: Classroom) -> None:
 
     page.go_back()
     expect(page.locator(".intro .which")).to_contain_text("Euler angles")
+    learner.sockets.forget()
     page.go_forward()
     learner.wait_live()
     learner.sees(yaw=98)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 import re
 import struct
 import tracemalloc
@@ -142,6 +143,16 @@ def test_a_few_wrong_bytes_give_a_cloud_or_a_clear_word(kind: str, draw: st.Data
         cloud = read(name, bytes(data), LARGEST)
         assert len(cloud) > 0
         assert np.isfinite(cloud.points).all()
+
+
+def test_numbers_that_signal_that_they_are_none_are_left_out_without_a_warning() -> None:
+    signals = struct.pack("<f", math.nan)[:2] + b"\xa0\x7f"
+    for place, dropped in ((0, 1), (4, 1), (16, 0)):
+        data = bytearray(pcd(Encoding.BINARY))
+        at = data.index(b"DATA binary\n") + len(b"DATA binary\n") + place
+        data[at : at + 4] = signals
+        cloud = read("a.pcd", bytes(data), LARGEST)
+        assert (len(cloud), cloud.dropped) == (60 - dropped, dropped)
 
 
 def claims() -> dict[str, tuple[str, bytes]]:

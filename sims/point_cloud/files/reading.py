@@ -40,6 +40,7 @@ FORMATS: dict[str, Callable[[bytes, int], Table]] = {
 }
 
 
+@np.errstate(invalid="ignore")  # a number that is none may be one that signals as it is turned into another kind
 def read(
     name: str, data: bytes, largest: int, columns: Sequence[str] = (), units: str = "auto", most: int = MOST_SHOWN
 ) -> Cloud:
@@ -67,8 +68,7 @@ def read(
 def _cloud(name: str, table: Table, roles: Sequence[str], units: str, most: int) -> Cloud:
     by_role = {role: values for role, values in zip(roles, table.values, strict=True) if values is not None}
     points = np.stack([by_role[axis].astype(np.float64) for axis in "xyz"], axis=1)
-    with np.errstate(invalid="ignore"):
-        rows = np.flatnonzero((np.abs(points) < FARTHEST).all(axis=1))
+    rows = np.flatnonzero((np.abs(points) < FARTHEST).all(axis=1))
     if not len(rows):
         raise CloudFileError(f"None of its {len(points):,} points has coordinates that are finite, and below 1e12.")
     dropped = len(points) - len(rows)
