@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, CDPSession, Error, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, CDPSession, Locator, Page, TimeoutError, sync_playwright
 
 from benchmarks.servers import ROOT, SLUG, Plain, Sim3
 from sims import SIMS
@@ -71,8 +71,8 @@ class Hand:
         self.page = page
         page.set_default_timeout(PATIENCE)
         page.add_init_script(WATCH)
-        page.goto(address, wait_until="commit", timeout=PATIENCE)
-        page.wait_for_function(LIVE, timeout=PATIENCE, polling=100)
+        page.goto(address, wait_until="commit")
+        page.wait_for_function(LIVE, polling=100)
         page.wait_for_timeout(2500)
         self.slider = page.locator("[data-slide], [role=slider]").first
         self._cdp: CDPSession = page.context.new_cdp_session(page)
@@ -103,7 +103,7 @@ class Hand:
 
     def _wait_for_frame(self) -> None:
         """Give a page that draws one frame in seconds the time for it."""
-        with contextlib.suppress(Error):
+        with contextlib.suppress(TimeoutError):
             self.page.wait_for_function("felt.frame > 0", timeout=SLOW, polling=100)
 
     def _metrics(self) -> dict[str, float]:

@@ -13,6 +13,7 @@ from geometry.arrays import Array
 from sims.epipolar.eye import eyes
 from sims.epipolar.params import EpipolarParams, Pixel, Place
 from sims.epipolar.rig import Pair
+from sims.kit.params import by_hand
 from sims.kit.sim import Step
 from sims.kit.stereo import camera
 from sims.kit.types import Segment
@@ -80,8 +81,8 @@ def hold(p: EpipolarParams, place: tuple[float, ...]) -> Mapping[str, Any]:
     if now < LEAST:
         return {}
     depth, point = reached(p, place[0])
-    passed = [round(each, DECIMALS) for each in (*(p.trail or (now,)), now, depth)]
-    return {"point": point, "trail": (min(passed), max(passed))}
+    passed = *(p.trail or (now,)), now, depth
+    return by_hand({"point": point, "trail": (min(passed), max(passed))}, DECIMALS)
 
 
 def sweep(p: EpipolarParams) -> Iterator[Step]:
@@ -140,5 +141,5 @@ def _before(both: Pair, start: Array, along: Array, near: float, far: float) -> 
 
 
 def _place(at: Array) -> Place:
-    x, y, z = (np.round(at, DECIMALS) + 0.0).tolist()
+    x, y, z = at.tolist()
     return x, y, z

@@ -204,15 +204,15 @@ def with_entries(changes: Mapping[str, Any], entries: Callable[[str], Any]) -> d
     return whole
 
 
-def by_hand(changes: Mapping[str, Any]) -> dict[str, Any]:
+def by_hand(changes: Mapping[str, Any], decimals: int = DECIMALS) -> dict[str, Any]:
     """What a hand leads to, in numbers that are finer than any hand and still short in a link."""
-    return {name: _rounded(value) for name, value in changes.items()}
+    return {name: _rounded(value, decimals) for name, value in changes.items()}
 
 
-def _rounded(value: Any) -> Any:
+def _rounded(value: Any, decimals: int) -> Any:
     if isinstance(value, tuple):
-        return tuple(map(_rounded, value))
-    return round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
+        return tuple(_rounded(each, decimals) for each in value)
+    return round(value, decimals) + 0.0 if isinstance(value, float) else value
 
 
 def _kind(model: type[Params], name: str, field: FieldInfo) -> Kind:

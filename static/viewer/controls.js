@@ -95,13 +95,13 @@ export class Controls {
   change(input) {
     const { choice, switch: name = choice } = input.dataset;
     if (!name) return;
-    setTimeout(() => this.answer(name), ANSWERED);
+    setTimeout(() => this.answer([name]), ANSWERED);
     this.asked = name;
     this.enter(name, choice ? input.value : input.checked ? "1" : "0");
   }
 
-  answer(name) {
-    if (this.asked === name) this.asked = "";
+  answer(names) {
+    if (names.includes(this.asked)) this.asked = "";
     if (this.pace.idle) this.settle();
   }
 
@@ -172,7 +172,7 @@ export class Controls {
   show(values) {
     Object.assign(this.known, values);
     for (const name of Object.keys(values)) for (const fold of inputs("fold", name)) fold.open = values[name] === fold.dataset.open;
-    this.answer(this.asked in values ? this.asked : null);
+    this.answer(Object.keys(values));
   }
 
   // Every input shows what is so, but for the one under a hand, being typed into, or waiting for its answer.

@@ -69,6 +69,17 @@ def fits(unpacked: int, largest: int) -> None:
         raise CloudFileError(f"Unpacked it is {unpacked / 1e6:,.0f} MB; at most {largest / 1e6:,.0f} MB are taken.")
 
 
+def floats(values: Values) -> Array:
+    """Values as floats, also where a NaN of a file is one that signals."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(values.astype(np.float64))
+
+
+def finite(values: Values) -> Array:
+    """Values as floats, zero where one isn't finite."""
+    return np.nan_to_num(floats(values), nan=0.0, posinf=0.0, neginf=0.0)
+
+
 def unpacked_colors(bits: npt.NDArray[np.uint32]) -> dict[str, Values]:
     """Red, green and blue of the four bytes that PCD keeps them in."""
     return {name: ((bits >> shift) & 255).astype(np.uint8) for name, shift in (("red", 16), ("green", 8), ("blue", 0))}

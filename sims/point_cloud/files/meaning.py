@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from geometry.arrays import Array
-from sims.point_cloud.files.columns import CloudFileError, Table, Values
+from sims.point_cloud.files.columns import CloudFileError, Table, Values, floats
 
 IGNORED = "-"
 ROLES = {
@@ -135,7 +135,7 @@ def _by_values(table: Table) -> list[str]:
 
 def _some(values: Values | None) -> Array | None:
     """Values of so many points, evenly over the file, that show what they are."""
-    return None if values is None else values[:: _every(len(values))].astype(np.float64)
+    return None if values is None else floats(values[:: _every(len(values))])
 
 
 def _every(count: int) -> int:

@@ -14,7 +14,16 @@ import lzf
 import numpy as np
 
 from geometry.arrays import Array
-from sims.point_cloud.files.columns import CloudFileError, Table, Values, declared, enough, fits, unpacked_colors
+from sims.point_cloud.files.columns import (
+    CloudFileError,
+    Table,
+    Values,
+    declared,
+    enough,
+    finite,
+    fits,
+    unpacked_colors,
+)
 from sims.point_cloud.files.numbers import WIDEST, stream
 
 _LONGEST_HEADER = 65_536
@@ -170,10 +179,10 @@ def _with_colors(columns: Mapping[str, Values], *, as_text: bool) -> dict[str, V
 def _bits(values: Values) -> np.ndarray[tuple[int, ...], np.dtype[np.uint32]]:
     if values.dtype.itemsize == 4:
         return np.ascontiguousarray(values).view(np.uint32)
-    finite = np.nan_to_num(values.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)
-    if (np.abs(finite) < _BITS_OF_A_FLOAT).all():
-        return finite.astype(np.float32).view(np.uint32)
-    return np.asarray((finite.astype(np.int64) & 0xFFFFFFFF).astype(np.uint32))
+    numbers = finite(values)
+    if (np.abs(numbers) < _BITS_OF_A_FLOAT).all():
+        return numbers.astype(np.float32).view(np.uint32)
+    return np.asarray((numbers.astype(np.int64) & 0xFFFFFFFF).astype(np.uint32))
 
 
 def _sensor(header: Mapping[str, Sequence[str]]) -> Array | None:

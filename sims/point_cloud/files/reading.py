@@ -10,7 +10,7 @@ import numpy as np
 
 from sims.point_cloud.cloud import Cloud
 from sims.point_cloud.files import placing
-from sims.point_cloud.files.columns import CloudFileError, Table
+from sims.point_cloud.files.columns import CloudFileError, Table, floats
 from sims.point_cloud.files.las import read_las
 from sims.point_cloud.files.meaning import COLORS, NORMALS, taken
 from sims.point_cloud.files.pcd import read_pcd
@@ -40,7 +40,6 @@ FORMATS: dict[str, Callable[[bytes, int], Table]] = {
 }
 
 
-@np.errstate(invalid="ignore")  # a number that is none may be one that signals as it is turned into another kind
 def read(
     name: str, data: bytes, largest: int, columns: Sequence[str] = (), units: str = "auto", most: int = MOST_SHOWN
 ) -> Cloud:
@@ -67,8 +66,9 @@ def read(
 
 def _cloud(name: str, table: Table, roles: Sequence[str], units: str, most: int) -> Cloud:
     by_role = {role: values for role, values in zip(roles, table.values, strict=True) if values is not None}
-    points = np.stack([by_role[axis].astype(np.float64) for axis in "xyz"], axis=1)
-    rows = np.flatnonzero((np.abs(points) < FARTHEST).all(axis=1))
+    points = np.stack([floats(by_role[axis]) for axis in "xyz"], axis=1)
+    with np.errstate(invalid="ignore"):
+        rows = np.flatnonzero((np.abs(points) < FARTHEST).all(axis=1))
     if not len(rows):
         raise CloudFileError(f"None of its {len(points):,} points has coordinates that are finite, and below 1e12.")
     dropped = len(points) - len(rows)

@@ -6,7 +6,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from sims.point_cloud.cloud import Colors
-from sims.point_cloud.files.columns import Values
+from sims.point_cloud.files.columns import Values, finite, floats
 
 SCALES = {"as bytes": 1.0, "from 16 bits": 255.0 / 65535.0, "from 0–1": 255.0}
 
@@ -16,9 +16,9 @@ def colors_of(channels: list[Values], declared: bool) -> tuple[Colors, str]:
 
     A declared type says the scale, but for 16 bits, which many programs fill with bytes.
     """
-    finite = np.stack([np.nan_to_num(c.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0) for c in channels], axis=1)
-    scale = _scale(channels[0].dtype, finite, declared)
-    return np.clip(np.rint(finite * SCALES[scale]), 0.0, 255.0).astype(np.uint8), scale
+    rgb = np.stack([finite(c) for c in channels], axis=1)
+    scale = _scale(channels[0].dtype, rgb, declared)
+    return np.clip(np.rint(rgb * SCALES[scale]), 0.0, 255.0).astype(np.uint8), scale
 
 
 def _scale(dtype: np.dtype[np.generic], rgb: Array, declared: bool) -> str:
@@ -36,7 +36,7 @@ def intensity_of(values: Values) -> tuple[Array, tuple[float, float]]:
     What is from 0 to 1 stays. All else goes from 0, or the least of negative values, to the greatest, but for the
     outermost percents where they are so far off that they would leave the rest one shade.
     """
-    raw = values.astype(np.float64)
+    raw = floats(values)
     raw[~np.isfinite(raw)] = np.nan
     given = raw[~np.isnan(raw)]
     if not len(given) or (given.min() >= 0.0 and given.max() <= 1.0):
@@ -51,9 +51,7 @@ def intensity_of(values: Values) -> tuple[Array, tuple[float, float]]:
 
 def normals_of(components: list[Values]) -> Array | None:
     """Unit normals (N, 3), zero where the file has none; None where it has none at all."""
-    vectors = np.stack(
-        [np.nan_to_num(c.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0) for c in components], axis=1
-    )
+    vectors = np.stack([finite(c) for c in components], axis=1)
     lengths = np.linalg.norm(vectors, axis=1)
     vectors[lengths > 0.0] /= lengths[lengths > 0.0, None]
     return vectors if lengths.any() else None
