@@ -2,8 +2,9 @@
 
 Each input is timed from its own event: until a number beside the scene has changed, and until a scene that was drawn
 after it is on the screen (two animation frames later). Beside them stand what the page's main thread does for one
-input, and how often it lays the page out; the same sim's sliders as viser alone has them; and, where `npm install p5`
-was run here, a sketch of it as the chapter writes them (benchmarks/sketch.html), lit and not.
+input, how often it lays the page out and how long that takes with its styles; the same sim's sliders as viser alone has
+them; and, where `npm install p5` was run here, a sketch of it as the chapter writes them (benchmarks/sketch.html), lit
+and not.
 
 The browser is left to find out by itself whether there is a GPU, as a learner's is: without one the processor draws the
 scene and puts the page together.
@@ -57,6 +58,7 @@ REST = 700
 PATIENCE = 60_000
 SLOW = 10_000
 """Milliseconds after which an input counts as one that led to no frame."""
+LAYING_OUT = "LayoutDuration", "RecalcStyleDuration"
 FEW = 3
 """Inputs that viser alone has, which may need ten seconds for each where the processor draws."""
 P5 = ROOT / "node_modules" / "p5" / "lib" / "p5.min.js"
@@ -99,6 +101,7 @@ class Hand:
             "frame": statistics.median(frames) if frames else float("nan"),
             "main": 1e3 * (after["TaskDuration"] - before["TaskDuration"]) / count,
             "layouts": (after["LayoutCount"] - before["LayoutCount"]) / count,
+            "laying out": 1e3 * sum(after[each] - before[each] for each in LAYING_OUT) / count,
         }
 
     def _wait_for_frame(self) -> None:

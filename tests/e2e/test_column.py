@@ -416,7 +416,7 @@ def test_a_strip_stands_above_the_rest_and_is_read_to_its_end(column: Open) -> N
     learner = column("camera/embed?challenge=shift", size=ViewportSize(width=700, height=600))
     tops = [box(learner.frame.locator(each))["y"] for each in (".s3-strip", ".s3-caption", ".s3-panes")]
     assert tops == sorted(tops)
-    away = learner.frame.locator(".s3-strip").get_by_text("px to go")
+    away = learner.frame.locator(".s3-strip .s3-away", has_text="px to go")
     assert away.evaluate("node => getComputedStyle(node).borderStyle") == "none", "it is no warning"
     learner = column("quaternion/embed?lesson=1", size=ViewportSize(width=560, height=315))
     cut = "all => all.filter((n) => n.scrollWidth > n.clientWidth + 1 || n.scrollHeight > n.clientHeight + 1).length"
