@@ -183,7 +183,7 @@ def felt_speed(quick: bool) -> Rows:
     for way, took in felt.measure(3 if quick else 12):
         rows.append({"way": way, **took})
         times = [f"{took[name]:.0f}" for name in ("numbers", "frame", "main")]
-        table.add([way, *times, f"{took['layouts']:.1f}", f"{took['laying out']:.1f}"])
+        table.add([way, *times, f"{took['layouts']:.1f}", f"{took['laying_out']:.1f}"])
     return rows
 
 

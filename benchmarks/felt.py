@@ -59,6 +59,7 @@ PATIENCE = 60_000
 SLOW = 10_000
 """Milliseconds after which an input counts as one that led to no frame."""
 LAYING_OUT = "LayoutDuration", "RecalcStyleDuration"
+"""What the browser counts as time for places and for styles, in seconds."""
 FEW = 3
 """Inputs that viser alone has, which may need ten seconds for each where the processor draws."""
 P5 = ROOT / "node_modules" / "p5" / "lib" / "p5.min.js"
@@ -101,7 +102,7 @@ class Hand:
             "frame": statistics.median(frames) if frames else float("nan"),
             "main": 1e3 * (after["TaskDuration"] - before["TaskDuration"]) / count,
             "layouts": (after["LayoutCount"] - before["LayoutCount"]) / count,
-            "laying out": 1e3 * sum(after[each] - before[each] for each in LAYING_OUT) / count,
+            "laying_out": 1e3 * sum(after[each] - before[each] for each in LAYING_OUT) / count,
         }
 
     def _wait_for_frame(self) -> None:
